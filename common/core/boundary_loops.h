@@ -1,0 +1,45 @@
+// Where a mesh is open: its boundary loops, each a simple cycle of vertices.
+#pragma once
+
+#include "common/core/mesh.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/progress.h"
+
+#include <string>
+#include <vector>
+
+namespace meshcomplete {
+
+/// Why a boundary loop cannot be closed by any patch that keeps the input as it is.
+enum class LoopDefect {
+  none,
+  non_manifold_edge,      ///< the faces round a vertex of the loop end at an edge with three or more faces
+  inconsistent_normals,   ///< the faces along the loop do not agree which side is the front
+  isolated_triangle,      ///< the rim of a single triangle
+  open_sheet,             ///< the outer rim of a nearly flat sheet: a patch would cover the sheet a second time
+  touches_itself,         ///< two vertices of the loop lie at the same position: the rim closes on itself there
+  degenerate_rim,         ///< a face at the rim has no area or an edge of the rim has no length
+};
+
+/// What a user is told about a defect: what it is, and which MeshLab filter mends it.
+std::string describe(LoopDefect defect);
+
+/// One boundary loop. `vertices[i] -> vertices[i + 1]` (cyclic) is the direction in which a patch triangle walks the
+/// edge: against the face that is there. Every vertex occurs once.
+struct BoundaryLoop {
+  std::vector<Index> vertices;
+  std::vector<Index> faces;  ///< `faces[i]` is the one triangle at the edge from `vertices[i]` to `vertices[i + 1]`.
+  Index component = 0;       ///< connected component (over edges) of the surface that the loop bounds
+  LoopDefect defect = LoopDefect::none;
+};
+
+/// Traces all boundary loops. Loops follow the fans of faces round each vertex, and are cut where they revisit a
+/// vertex, so that two holes that touch at a vertex are two loops. Order: by smallest vertex index, each loop starting
+/// there. Cost: O(boundary) after the topology, plus O(faces) for the components.
+std::vector<BoundaryLoop> trace_boundary_loops(const TriangleMesh& mesh, const MeshTopology& topology,
+                                               const Progress& progress = Progress());
+
+/// Sum of the edge lengths of a loop.
+double perimeter(const TriangleMesh& mesh, const BoundaryLoop& loop);
+
+}  // namespace meshcomplete

@@ -1,0 +1,27 @@
+// Which faces meet at which edge: the adjacency that boundary tracing and statistics need, built in one linear pass.
+#pragma once
+
+#include "common/core/mesh.h"
+#include "common/core/progress.h"
+
+#include <vector>
+
+namespace meshcomplete {
+
+/// Half-edge `3 * f + k` goes from corner k to corner k + 1 of triangle f.
+struct MeshTopology {
+  static constexpr Index boundary = 0xffffffffu;      ///< the edge has one face
+  static constexpr Index non_manifold = 0xfffffffeu;  ///< the edge has three or more faces
+
+  /// For each half-edge the other half-edge at the same undirected edge, or `boundary`, or `non_manifold`.
+  /// The other one runs the opposite way when the two faces are oriented alike, and the same way when they are not.
+  std::vector<Index> opposite;
+  std::vector<Index> boundary_half_edges;  ///< ascending
+  std::vector<Index> non_manifold_half_edges;  ///< ascending
+  std::vector<Index> degenerate_faces;     ///< triangles with a repeated corner; their half-edges are left out everywhere
+};
+
+/// Cost: O(faces), two passes, threads for the second; about 12 bytes of scratch per half-edge.
+MeshTopology build_topology(const TriangleMesh& mesh, const Progress& progress = Progress());
+
+}  // namespace meshcomplete

@@ -1,0 +1,68 @@
+// The exact check that every patch passes before it is appended.
+#pragma once
+
+#include "common/core/boundary_loops.h"
+#include "common/core/mesh.h"
+#include "common/core/patch.h"
+#include "common/core/progress.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace meshcomplete {
+
+/// What can be wrong with a patch, cheapest test first. `none` means: every targeted boundary edge has exactly one new
+/// face, walked against the old one; every other edge of the patch has two faces, walked in opposite directions, and
+/// none of the input; the faces round every new vertex form one closed fan; no face is degenerate or a duplicate; no two
+/// triangles of the patch, and no triangle of the patch and of the input, meet in more than the corners or the side
+/// that they share. Decided with exact predicates on the stored (float) positions.
+enum class PatchDefect {
+  none,
+  bad_index,            ///< a corner that is neither an input vertex nor a new one, or a repeated corner
+  unused_vertex,        ///< a new vertex without a face
+  not_finite,           ///< a coordinate is infinite or not a number, or is not a float
+  rim_not_closed,       ///< a targeted boundary edge without exactly one new face in the right direction
+  edge_not_manifold,    ///< an edge with more than two faces, with one face only, or walked twice in one direction
+  vertex_not_manifold,  ///< the new faces round a vertex do not form one fan between rim edges (or one closed fan)
+  degenerate_face,      ///< three collinear corners
+  coincident_vertices,  ///< two vertices of the patch at one position
+  meets_itself,         ///< two patch triangles intersect
+  meets_input,          ///< a patch triangle intersects a triangle of the input
+};
+
+std::string describe(PatchDefect defect);
+
+/// The first defect found, with the patch triangles that have it (for intersections all of them, so that a caller can
+/// mend them) and, for `meets_input`, the input triangles that are met.
+struct PatchCheck {
+  PatchDefect defect = PatchDefect::none;
+  std::vector<Index> patch_triangles;
+  std::vector<Index> input_triangles;
+  bool passed() const { return defect == PatchDefect::none; }
+};
+
+/// The input near the holes: what a patch may hit. Built once per run, used for every hole and every try.
+class InputNeighbourhood {
+ public:
+  /// Cost: O(faces), threaded, memory one bounding box per 64 triangles.
+  explicit InputNeighbourhood(const TriangleMesh& mesh);
+  ~InputNeighbourhood();
+  InputNeighbourhood(InputNeighbourhood&&) noexcept;
+
+  const TriangleMesh& mesh() const;
+  /// Indices, ascending, of the input triangles whose bounding box meets the closed box [low, high].
+  std::vector<Index> triangles_in_box(const Vector3& low, const Vector3& high) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Checks `patch` against itself and the input. `rim` is the list of boundary loops that it must close. Thread-safe.
+/// Cost: O(patch log patch) plus the input triangles in the patch's neighbourhood.
+PatchCheck check_patch(const InputNeighbourhood& input, const Patch& patch,
+                       const std::vector<const BoundaryLoop*>& rim, const Progress& progress = Progress());
+
+}  // namespace meshcomplete
