@@ -22,8 +22,18 @@ struct CurveUnfoldingOptions {
   bool unfolded_layer = false;        ///< also return the flat triangulations (paper, figures 4b to 7b)
 };
 
+/// What one hole cost, all tries together. Wall seconds of the thread that worked on it.
+struct HoleTimes {
+  double unfolding = 0;
+  double embedding = 0;   ///< triangulating, refining, solving
+  double checking = 0;
+  int restarts = 0;       ///< annealing runs (paper's d)
+  std::size_t steps = 0;  ///< unfolding steps
+};
+
 struct CurveUnfoldingResult {
   Completion completion;
+  std::vector<HoleTimes> times;  ///< one per hole of the report
   TriangleMesh unfolded;  ///< the planar triangulations side by side in the plane z = 0; empty unless asked for
 };
 

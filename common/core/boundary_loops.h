@@ -13,12 +13,12 @@ namespace meshcomplete {
 /// Why a boundary loop cannot be closed by any patch that keeps the input as it is.
 enum class LoopDefect {
   none,
-  non_manifold_edge,      ///< the faces round a vertex of the loop end at an edge with three or more faces
+  non_manifold_edge,      ///< edges with three or more faces end at the loop, and how it goes on there is ambiguous
   inconsistent_normals,   ///< the faces along the loop do not agree which side is the front
   isolated_triangle,      ///< the rim of a single triangle
   open_sheet,             ///< the outer rim of a nearly flat sheet: a patch would cover the sheet a second time
   touches_itself,         ///< two vertices of the loop lie at the same position: the rim closes on itself there
-  degenerate_rim,         ///< a face at the rim has no area or an edge of the rim has no length
+  degenerate_rim,         ///< all vertices of the loop lie on one line
 };
 
 /// What a user is told about a defect: what it is, and which MeshLab filter mends it.
@@ -29,13 +29,14 @@ std::string describe(LoopDefect defect);
 struct BoundaryLoop {
   std::vector<Index> vertices;
   std::vector<Index> faces;  ///< `faces[i]` is the one triangle at the edge from `vertices[i]` to `vertices[i + 1]`.
-  Index component = 0;       ///< connected component (over edges) of the surface that the loop bounds
   LoopDefect defect = LoopDefect::none;
 };
 
 /// Traces all boundary loops. Loops follow the fans of faces round each vertex, and are cut where they revisit a
-/// vertex, so that two holes that touch at a vertex are two loops. Order: by smallest vertex index, each loop starting
-/// there. Cost: O(boundary) after the topology, plus O(faces) for the components.
+/// vertex, so that two holes that touch at a vertex are two loops. Where a fan ends at a non-manifold edge the loop
+/// goes on with the other loose end at that vertex, when there is just one. A loop with a defect may be an open chain.
+/// Order: by smallest vertex index, each loop starting there. Cost: O(boundary) after the topology, and for a loop whose
+/// surface may be an open sheet as many faces as cover about its area.
 std::vector<BoundaryLoop> trace_boundary_loops(const TriangleMesh& mesh, const MeshTopology& topology,
                                                const Progress& progress = Progress());
 

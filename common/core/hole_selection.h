@@ -24,8 +24,9 @@ struct HoleSelectionOptions {
   bool keep_largest = false;                  ///< leave the loop with the greatest perimeter open
 };
 
-/// One report per loop: `failed` for the holes to work on (nothing has closed them yet), `skipped` with a reason for
-/// all others, including loops with a defect. Throws `CompletionError` when the options contradict each other or the
+/// One report per loop. `skipped` with a reason: not asked for, or nothing that a patch should close (the rim of a single
+/// triangle or of an open sheet). `failed` with a reason: asked for, but the loop has a defect. `failed` without a reason:
+/// to be worked on. Throws `CompletionError` when the options contradict each other or the
 /// selection is asked for and empty. Cost: O(boundary + faces when a selection is used).
 std::vector<HoleReport> select_holes(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops,
                                      const MeshSelection& selection, const HoleSelectionOptions& options);

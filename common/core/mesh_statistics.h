@@ -20,13 +20,14 @@ struct MeshStatistics {
   std::size_t duplicated_vertices = 0;    ///< used vertices beyond the first at each position
   std::size_t components = 0;             ///< connected over edges
   std::size_t boundary_edges = 0;
-  std::vector<std::size_t> boundary_loops;  ///< edges per loop, descending
+  std::vector<std::size_t> boundary_loops;  ///< edges per loop, descending; loops follow the fans of faces, so one
+                                            ///< that touches itself at a vertex is one loop
   std::size_t non_manifold_edges = 0;     ///< with three or more faces
-  std::size_t non_manifold_vertices = 0;  ///< not on such an edge, and with more than one fan of faces
+  std::size_t non_manifold_vertices = 0;  ///< with more than one fan of faces (faces at one edge are in one fan)
   std::size_t inconsistent_edges = 0;     ///< two faces that walk the edge the same way
   bool orientable = true;
   std::optional<long long> genus;         ///< sum over components, boundary loops capped; absent when an edge is not manifold or the mesh is not orientable
-  std::size_t degenerate_faces = 0;       ///< repeated corner or collinear corners
+  std::size_t degenerate_faces = 0;       ///< repeated, collinear or infinite corners
   std::size_t duplicate_faces = 0;        ///< faces beyond the first with the same three corners
   std::optional<std::size_t> self_intersecting_pairs;  ///< absent when not asked for
   double volume = 0;                      ///< signed, mesh units cubed, about the mean vertex; means something when watertight

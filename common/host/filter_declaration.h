@@ -81,6 +81,7 @@ struct FilterDeclaration {
   Arity arity = Arity::one_mesh;
   std::vector<ParameterDeclaration> parameters;
   std::function<void(FilterRun&)> apply;
+  bool changes_mesh = true;  ///< false for filters that only report: MeshLab then redraws nothing
 };
 
 /// Implemented by every plugin of the suite, beside MeshLab's own interface, so that the runner can ask for what

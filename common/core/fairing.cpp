@@ -1,0 +1,328 @@
+#include "common/core/fairing.h"
+
+#include "common/core/error.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace meshcomplete {
+namespace {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using Cholesky = Eigen::SimplicialLDLT<SparseMatrix>;
+
+constexpr const char* stage = "computing the minimum-energy surface";
+
+// Cotangents are bounded as if no angle were outside 3 to 177 degrees: needles of the rim's ring would otherwise rule the
+// whole system, and negative weights could make it indefinite.
+constexpr double largest_cotangent = 19.0;
+// The least weight of an edge, relative to the cotangent weight 1/sqrt(3) of an equilateral mesh's edge: about 1 %.
+constexpr double smallest_weight = 0.006;
+
+// Rounds of turning normals and fitting the surface to them. The energy falls by less than a percent after these.
+constexpr int normal_rounds = 6;
+
+double bounded_cotangent(const Vector3& u, const Vector3& v) {
+  const double area = u.cross(v).norm();
+  const double inner = u.dot(v);
+  if (!(area * largest_cotangent > std::abs(inner))) return inner > 0 ? largest_cotangent : -largest_cotangent;
+  return inner / area;
+}
+
+// The symmetric Laplacian L (positive semi-definite) and the lumped masses of a surface.
+struct Laplacian {
+  SparseMatrix matrix;
+  Eigen::VectorXd mass;
+};
+
+Laplacian uniform_laplacian(const TriangleMesh& surface) {
+  const Eigen::Index n = static_cast<Eigen::Index>(surface.vertices.size());
+  Triplets triplets;
+  for (const Triangle& t : surface.triangles)
+    for (int k = 0; k < 3; ++k) {
+      triplets.emplace_back(t[k], t[(k + 1) % 3], 1.0);
+      triplets.emplace_back(t[(k + 1) % 3], t[k], 1.0);
+    }
+  SparseMatrix adjacency(n, n);
+  adjacency.setFromTriplets(triplets.begin(), triplets.end(), [](double, double) { return 1.0; });
+  Laplacian laplacian;
+  laplacian.mass = adjacency * Eigen::VectorXd::Ones(n);
+  laplacian.matrix = -adjacency;
+  laplacian.matrix += SparseMatrix(laplacian.mass.asDiagonal());
+  return laplacian;
+}
+
+Laplacian cotangent_laplacian(const TriangleMesh& surface) {
+  const Eigen::Index n = static_cast<Eigen::Index>(surface.vertices.size());
+  Triplets triplets;
+  Laplacian laplacian;
+  laplacian.mass = Eigen::VectorXd::Zero(n);
+  for (const Triangle& t : surface.triangles) {
+    const Vector3 &a = surface.vertices[t[0]], &b = surface.vertices[t[1]], &c = surface.vertices[t[2]];
+    const double third = (b - a).cross(c - a).norm() / 6.0;
+    for (int k = 0; k < 3; ++k) {
+      const Index i = t[k], j = t[(k + 1) % 3], o = t[(k + 2) % 3];
+      const double weight = 0.5 * bounded_cotangent(surface.vertices[i] - surface.vertices[o],
+                                                    surface.vertices[j] - surface.vertices[o]);
+      triplets.emplace_back(i, j, weight);
+      triplets.emplace_back(j, i, weight);
+      laplacian.mass[i] += third;
+    }
+  }
+  SparseMatrix weights(n, n);
+  weights.setFromTriplets(triplets.begin(), triplets.end());
+  for (Eigen::Index k = 0; k < weights.nonZeros(); ++k)
+    weights.valuePtr()[k] = std::max(weights.valuePtr()[k], smallest_weight);
+  const Eigen::VectorXd diagonal = weights * Eigen::VectorXd::Ones(n);
+  laplacian.matrix = -weights;
+  laplacian.matrix += SparseMatrix(diagonal.asDiagonal());
+  // A vertex of needles only would get no mass and infinite stiffness.
+  const double mean = laplacian.mass.sum() / static_cast<double>(std::max<Eigen::Index>(n, 1));
+  laplacian.mass = laplacian.mass.cwiseMax(1e-3 * mean);
+  return laplacian;
+}
+
+Laplacian make_laplacian(const TriangleMesh& surface, LaplacianWeights weights) {
+  return weights == LaplacianWeights::uniform ? uniform_laplacian(surface) : cotangent_laplacian(surface);
+}
+
+// Splits the vertices into unknowns and knowns.
+struct Numbering {
+  std::vector<Eigen::Index> unknown;  // number among the unknowns, or -1
+  std::vector<Index> free_vertices;
+  SparseMatrix pick_free, pick_fixed;  // columns of the identity
+
+  explicit Numbering(const std::vector<char>& fixed) : unknown(fixed.size(), -1) {
+    Triplets free, known;
+    for (Index v = 0; v < fixed.size(); ++v) {
+      if (fixed[v]) {
+        known.emplace_back(v, static_cast<Eigen::Index>(known.size()), 1.0);
+      } else {
+        unknown[v] = static_cast<Eigen::Index>(free_vertices.size());
+        free.emplace_back(v, unknown[v], 1.0);
+        free_vertices.push_back(v);
+      }
+    }
+    const Eigen::Index n = static_cast<Eigen::Index>(fixed.size());
+    pick_free.resize(n, static_cast<Eigen::Index>(free.size()));
+    pick_free.setFromTriplets(free.begin(), free.end());
+    pick_fixed.resize(n, static_cast<Eigen::Index>(known.size()));
+    pick_fixed.setFromTriplets(known.begin(), known.end());
+  }
+};
+
+Coordinates coordinates_of(const TriangleMesh& surface) {
+  Coordinates x(static_cast<Eigen::Index>(surface.vertices.size()), 3);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    x.row(static_cast<Eigen::Index>(v)) = surface.vertices[v].transpose();
+  return x;
+}
+
+void set_free(TriangleMesh& surface, const Numbering& numbering, const Coordinates& solution) {
+  for (std::size_t i = 0; i < numbering.free_vertices.size(); ++i)
+    surface.vertices[numbering.free_vertices[i]] = solution.row(static_cast<Eigen::Index>(i)).transpose();
+}
+
+void factorize(Cholesky& solver, const SparseMatrix& matrix) {
+  solver.compute(matrix);
+  if (solver.info() != Eigen::Success || (solver.vectorD().array() <= 0).any())
+    throw CompletionError(stage, "The equations of the minimum-energy surface have no unique solution.");
+}
+
+// Solves energy x' Q x -> min over the free rows of x.
+void minimize_quadratic(TriangleMesh& surface, const Numbering& numbering, const SparseMatrix& energy) {
+  const SparseMatrix rows = numbering.pick_free.transpose() * energy;
+  const SparseMatrix system = rows * numbering.pick_free;
+  Coordinates x = coordinates_of(surface);
+  for (Index v : numbering.free_vertices) x.row(v).setZero();
+  Cholesky solver;
+  factorize(solver, system);
+  set_free(surface, numbering, solver.solve(-(rows * x)));
+}
+
+void minimize_membrane(TriangleMesh& surface, const Numbering& numbering, LaplacianWeights weights) {
+  minimize_quadratic(surface, numbering, make_laplacian(surface, weights).matrix);
+}
+
+// With one equation U^2 = 0 for every unknown the least sum of squares is zero, and these equations, multiplied by the
+// masses, are the rows L M^-1 L of the free vertices. The rows of the rim's vertices in the inner L bring in the ring.
+void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, LaplacianWeights weights) {
+  const Laplacian laplacian = make_laplacian(surface, weights);
+  const SparseMatrix inner = laplacian.matrix * numbering.pick_free;
+  const SparseMatrix weighted = laplacian.mass.cwiseInverse().asDiagonal() * inner;
+  const SparseMatrix system = inner.transpose() * weighted;
+  Coordinates x = coordinates_of(surface);
+  for (Index v : numbering.free_vertices) x.row(v).setZero();
+  const Coordinates right = -(weighted.transpose() * (laplacian.matrix * x));
+  Cholesky solver;
+  factorize(solver, system);
+  set_free(surface, numbering, solver.solve(right));
+}
+
+// --- normals ---
+
+Vector3 unit_normal(const TriangleMesh& surface, const Triangle& t) {
+  const Vector3 n = (surface.vertices[t[1]] - surface.vertices[t[0]])
+                        .cross(surface.vertices[t[2]] - surface.vertices[t[0]]);
+  const double length = n.norm();
+  return length > 0 ? Vector3(n / length) : Vector3::Zero();
+}
+
+// Pairs of triangles that share an edge, with the edge's length.
+struct Hinge {
+  Index left, right;
+  double length;
+};
+
+std::vector<Hinge> find_hinges(const TriangleMesh& surface) {
+  struct Side {
+    Index low, high, triangle;
+  };
+  std::vector<Side> sides;
+  for (Index f = 0; f < surface.triangles.size(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = surface.triangles[f][k], b = surface.triangles[f][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), f});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  std::vector<Hinge> hinges;
+  for (std::size_t i = 1; i < sides.size(); ++i)
+    if (sides[i].low == sides[i - 1].low && sides[i].high == sides[i - 1].high)
+      hinges.push_back({sides[i - 1].triangle, sides[i].triangle,
+                        (surface.vertices[sides[i].low] - surface.vertices[sides[i].high]).norm()});
+  return hinges;
+}
+
+// Normals of the triangles with a free corner that vary least across edges, given those of the others.
+Coordinates smoothest_normals(const TriangleMesh& surface, const std::vector<Hinge>& hinges,
+                              const std::vector<char>& fixed_triangle) {
+  const Numbering numbering(fixed_triangle);
+  Coordinates normals(static_cast<Eigen::Index>(surface.triangles.size()), 3);
+  for (std::size_t f = 0; f < surface.triangles.size(); ++f)
+    normals.row(static_cast<Eigen::Index>(f)) = unit_normal(surface, surface.triangles[f]).transpose();
+  Triplets triplets;
+  Coordinates right = Coordinates::Zero(static_cast<Eigen::Index>(numbering.free_vertices.size()), 3);
+  for (const Hinge& hinge : hinges) {
+    for (const auto& [here, there] : {std::pair(hinge.left, hinge.right), std::pair(hinge.right, hinge.left)}) {
+      const Eigen::Index i = numbering.unknown[here], j = numbering.unknown[there];
+      if (i < 0) continue;
+      triplets.emplace_back(i, i, hinge.length);
+      if (j >= 0)
+        triplets.emplace_back(i, j, -hinge.length);
+      else
+        right.row(i) += hinge.length * normals.row(there);
+    }
+  }
+  const Eigen::Index n = static_cast<Eigen::Index>(numbering.free_vertices.size());
+  SparseMatrix system(n, n);
+  system.setFromTriplets(triplets.begin(), triplets.end());
+  Cholesky solver;
+  factorize(solver, system);
+  const Coordinates solution = solver.solve(right);
+  for (Eigen::Index i = 0; i < n; ++i)
+    normals.row(numbering.free_vertices[static_cast<std::size_t>(i)]) = solution.row(i).normalized();
+  return normals;
+}
+
+// The right-hand side of the Poisson problem whose solution has triangles turned onto the wanted normals.
+Coordinates turned_divergence(const TriangleMesh& surface, const Coordinates& wanted) {
+  Coordinates right = Coordinates::Zero(static_cast<Eigen::Index>(surface.vertices.size()), 3);
+  for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    const Vector3 now = unit_normal(surface, t);
+    const Vector3 goal = wanted.row(static_cast<Eigen::Index>(f)).transpose();
+    if (now.isZero() || goal.isZero()) continue;
+    const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(now, goal).toRotationMatrix();
+    for (int k = 0; k < 3; ++k) {
+      const Index i = t[k], j = t[(k + 1) % 3], o = t[(k + 2) % 3];
+      const double weight = 0.5 * bounded_cotangent(surface.vertices[i] - surface.vertices[o],
+                                                    surface.vertices[j] - surface.vertices[o]);
+      const Vector3 edge = turn * (surface.vertices[i] - surface.vertices[j]);
+      right.row(i) += std::max(weight, 0.5 * smallest_weight) * edge.transpose();
+      right.row(j) -= std::max(weight, 0.5 * smallest_weight) * edge.transpose();
+    }
+  }
+  return right;
+}
+
+SparseMatrix clamped_stiffness(const TriangleMesh& surface) {
+  const Eigen::Index n = static_cast<Eigen::Index>(surface.vertices.size());
+  Triplets triplets;
+  for (const Triangle& t : surface.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Index i = t[k], j = t[(k + 1) % 3], o = t[(k + 2) % 3];
+      const double weight = std::max(0.5 * bounded_cotangent(surface.vertices[i] - surface.vertices[o],
+                                                             surface.vertices[j] - surface.vertices[o]),
+                                     0.5 * smallest_weight);
+      triplets.emplace_back(i, i, weight);
+      triplets.emplace_back(j, j, weight);
+      triplets.emplace_back(i, j, -weight);
+      triplets.emplace_back(j, i, -weight);
+    }
+  SparseMatrix stiffness(n, n);
+  stiffness.setFromTriplets(triplets.begin(), triplets.end());
+  return stiffness;
+}
+
+void minimize_normal_variation(TriangleMesh& surface, const std::vector<char>& fixed, const Numbering& numbering,
+                               LaplacianWeights weights, const Progress& progress) {
+  minimize_thin_plate(surface, numbering, weights);
+  const std::vector<Hinge> hinges = find_hinges(surface);
+  std::vector<char> fixed_triangle;
+  for (const Triangle& t : surface.triangles) fixed_triangle.push_back(fixed[t[0]] && fixed[t[1]] && fixed[t[2]]);
+  for (int round = 0; round < normal_rounds; ++round) {
+    const Coordinates wanted = smoothest_normals(surface, hinges, fixed_triangle);
+    const SparseMatrix rows = numbering.pick_free.transpose() * clamped_stiffness(surface);
+    Coordinates x = coordinates_of(surface);
+    const Coordinates right = numbering.pick_free.transpose() * turned_divergence(surface, wanted);
+    for (Index v : numbering.free_vertices) x.row(v).setZero();
+    Cholesky solver;
+    factorize(solver, rows * numbering.pick_free);
+    set_free(surface, numbering, solver.solve(right - rows * x));
+    progress.update((round + 1.0) / normal_rounds);
+  }
+}
+
+}  // namespace
+
+const char* name(SurfaceEnergy energy) {
+  switch (energy) {
+    case SurfaceEnergy::membrane: return "membrane";
+    case SurfaceEnergy::thin_plate: return "thin plate";
+    case SurfaceEnergy::normal_variation: return "normal variation";
+  }
+  return "";
+}
+
+void minimize_energy(TriangleMesh& surface, const std::vector<char>& fixed, SurfaceEnergy energy,
+                     LaplacianWeights weights, const Progress& progress) {
+  const Numbering numbering(fixed);
+  if (numbering.free_vertices.empty()) return;
+  // Centre and unit size: the masses' units and the rounding of far-away coordinates drop out of the equations.
+  Eigen::AlignedBox3d box;
+  for (const Vector3& p : surface.vertices) box.extend(p);
+  const Vector3 centre = box.center();
+  const double scale = box.diagonal().norm();
+  if (!(scale > 0)) throw CompletionError(stage, "All vertices round the hole lie at one point.");
+  const std::vector<Vector3> before = surface.vertices;
+  for (Vector3& p : surface.vertices) p = (p - centre) / scale;
+  progress.check();
+  switch (energy) {
+    case SurfaceEnergy::membrane: minimize_membrane(surface, numbering, weights); break;
+    case SurfaceEnergy::thin_plate: minimize_thin_plate(surface, numbering, weights); break;
+    case SurfaceEnergy::normal_variation:
+      minimize_normal_variation(surface, fixed, numbering, weights, progress);
+      break;
+  }
+  for (std::size_t v = 0; v < before.size(); ++v)
+    surface.vertices[v] = fixed[v] ? before[v] : Vector3(surface.vertices[v] * scale + centre);
+}
+
+}  // namespace meshcomplete

@@ -1,0 +1,257 @@
+#include "common/core/patch_remeshing.h"
+
+#include "common/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <string>
+
+namespace meshcomplete {
+namespace {
+
+constexpr Index none = PatchMesh::none;
+
+// A flip may bend the surface by at most this angle unless it was bent more before: cosine of 60 degrees.
+constexpr double flat_enough = 0.5;
+
+// A vertex moves at most this far towards the centre of its neighbours in one smoothing step.
+constexpr double smoothing_step = 0.7;
+
+class Remesher {
+ public:
+  Remesher(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options)
+      : patch_(patch), target_(target), options_(options) {}
+
+  void split_long_edges(const Progress& progress);
+  void collapse_short_edges();
+  void flip_all();
+  void smooth_along_surface();
+  void split_forbidden();
+  void compact();
+
+ private:
+  struct LongEdge {
+    double ratio;
+    Index from, to, half_edge;
+    bool operator<(const LongEdge& other) const {
+      return ratio != other.ratio ? ratio < other.ratio : half_edge > other.half_edge;
+    }
+  };
+
+  double relative_length(Index h) const {
+    return patch_.length(h) / (0.5 * (target_[patch_.origin(h)] + target_[patch_.target(h)]));
+  }
+  bool forbidden(Index a, Index b) const {
+    if (!patch_.on_rim(a) || !patch_.on_rim(b)) return false;
+    const std::pair<Index, Index> pair(std::min(a, b), std::max(a, b));
+    return std::binary_search(options_.forbidden.begin(), options_.forbidden.end(), pair);
+  }
+  bool wants_flip(Index h) const;
+  void flip_around(Index vertex);
+  void flip_stack();
+  Index split(Index h);
+  bool collapse_is_good(Index h) const;
+
+  PatchMesh& patch_;
+  std::vector<double>& target_;
+  const RemeshOptions& options_;
+  std::vector<Index> stack_;  // half-edges that may have to be flipped
+};
+
+// Sum of the cotangents of a triangle's angles, times four: squared sides over area, infinite for a flat triangle.
+double harmonic_index(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const double squares = (a - b).squaredNorm() + (b - c).squaredNorm() + (c - a).squaredNorm();
+  const double area = (b - a).cross(c - a).norm();
+  return area > 0 ? squares / area : std::numeric_limits<double>::infinity();
+}
+
+// In the plane the Delaunay triangulation has the least sum of harmonic indices (Musin 1997), and every flip towards it
+// lowers the sum. Asking for just that also makes flips end on a bent patch, where the angle criterion may cycle.
+bool Remesher::wants_flip(Index h) const {
+  const Index g = patch_.opposite(h);
+  if (g == none) return false;
+  const Index a = patch_.origin(h), b = patch_.target(h), c = patch_.apex(h), d = patch_.apex(g);
+  const Vector3 &pa = patch_.position(a), &pb = patch_.position(b), &pc = patch_.position(c), &pd = patch_.position(d);
+  // The margin is far above the rounding of the sums and far below any change worth a flip.
+  constexpr double margin = 1.0 - 1e-9;
+  const double before = harmonic_index(pa, pb, pc) + harmonic_index(pb, pa, pd);
+  const double after = harmonic_index(pc, pd, pb) + harmonic_index(pd, pc, pa);
+  if (!(after < margin * before)) return false;
+  // Never a long edge for a shorter one: splitting long edges would undo the flip, and never end.
+  const double new_length = (pc - pd).norm();
+  if (new_length > 0.5 * options_.longest * (target_[c] + target_[d]) && new_length > (pa - pb).norm()) return false;
+  if (forbidden(c, d) || c == d || patch_.joined(c, d)) return false;
+  const Vector3 before1 = (pb - pa).cross(pc - pa), before2 = (pa - pb).cross(pd - pb);
+  const Vector3 after1 = (pd - pc).cross(pb - pc), after2 = (pc - pd).cross(pa - pd);
+  const double bend_after = after1.dot(after2) / (after1.norm() * after2.norm());
+  const double norms_before = before1.norm() * before2.norm();
+  const double bend_before = norms_before > 0 ? before1.dot(before2) / norms_before : -1.0;
+  return bend_after >= std::min(flat_enough, bend_before);
+}
+
+void Remesher::flip_stack() {
+  while (!stack_.empty()) {
+    const Index h = stack_.back();
+    stack_.pop_back();
+    if (!patch_.alive(h / 3) || patch_.is_boundary(h) || !wants_flip(h)) continue;
+    const Index h0 = h - h % 3, g0 = patch_.opposite(h) - patch_.opposite(h) % 3;
+    patch_.flip(h);
+    for (Index around : {h0 + 1, h0 + 2, g0 + 1, g0 + 2}) stack_.push_back(around);
+  }
+}
+
+void Remesher::flip_all() {
+  for (Index h = 0; h < 3 * patch_.triangle_count(); ++h)
+    if (patch_.alive(h / 3) && !patch_.is_boundary(h) && h < patch_.opposite(h)) stack_.push_back(h);
+  std::reverse(stack_.begin(), stack_.end());
+  flip_stack();
+}
+
+void Remesher::flip_around(Index vertex) {
+  patch_.for_outgoing(vertex, [&](Index h) {
+    stack_.push_back(PatchMesh::next(h));
+    stack_.push_back(h);
+  });
+  flip_stack();
+}
+
+Index Remesher::split(Index h) {
+  const Index a = patch_.origin(h), b = patch_.target(h);
+  const Index m = patch_.split(h, 0.5 * (patch_.position(a) + patch_.position(b)));
+  target_.push_back(0.5 * (target_[a] + target_[b]));
+  return m;
+}
+
+void Remesher::split_long_edges(const Progress& progress) {
+  std::priority_queue<LongEdge> queue;
+  const auto consider = [&](Index h) {
+    if (patch_.is_boundary(h)) return;
+    const double ratio = relative_length(h);
+    if (ratio > options_.longest) queue.push({ratio, patch_.origin(h), patch_.target(h), h});
+  };
+  for (Index h = 0; h < 3 * patch_.triangle_count(); ++h)
+    if (patch_.alive(h / 3) && (patch_.is_boundary(h) || h < patch_.opposite(h))) consider(h);
+  std::size_t count = 0;
+  while (!queue.empty()) {
+    const LongEdge edge = queue.top();
+    queue.pop();
+    const Index h = edge.half_edge;
+    // Stale when flips or splits have changed what the half-edge joins.
+    if (!patch_.alive(h / 3) || patch_.origin(h) != edge.from || patch_.target(h) != edge.to) continue;
+    if (patch_.vertex_count() >= options_.max_vertices)
+      throw CompletionError("refining the patch", "The patch would need more than " +
+                                                      std::to_string(options_.max_vertices) +
+                                                      " vertices at this edge length; ask for longer edges.");
+    const Index m = split(h);
+    flip_around(m);
+    patch_.for_outgoing(m, [&](Index out) {
+      consider(out);
+      consider(PatchMesh::next(out));
+    });
+    if (++count % 256 == 0) progress.check();
+  }
+}
+
+bool Remesher::collapse_is_good(Index h) const {
+  if (!patch_.can_collapse(h)) return false;
+  const Index a = patch_.origin(h), b = patch_.target(h);
+  const Vector3 goal = patch_.position(b);
+  bool good = true;
+  patch_.for_outgoing(a, [&](Index out) {
+    const Index from = patch_.target(out), to = patch_.apex(out);
+    const bool dies = from == b || to == b;
+    if (from != b) {
+      const double wanted = 0.5 * (target_[from] + target_[b]);
+      good &= (patch_.position(from) - goal).norm() <= options_.longest * wanted;
+      // A chord of the rim is a long-lived nuisance: it may double an input edge and cannot be smoothed.
+      good &= !(patch_.on_rim(b) && patch_.on_rim(from)) || patch_.joined(from, b);
+    }
+    if (dies) return;
+    const Vector3 before = patch_.area_normal(out / 3);
+    const Vector3 after = (patch_.position(from) - goal).cross(patch_.position(to) - goal);
+    good &= after.dot(before) > flat_enough * after.norm() * before.norm();
+  });
+  return good;
+}
+
+void Remesher::collapse_short_edges() {
+  const Index half_edges = static_cast<Index>(3 * patch_.triangle_count());
+  for (Index h = 0; h < half_edges; ++h) {
+    if (!patch_.alive(h / 3) || patch_.is_boundary(h) || relative_length(h) >= options_.shortest) continue;
+    Index doomed = h;
+    if (patch_.on_rim(patch_.origin(doomed))) doomed = patch_.opposite(h);
+    if (patch_.on_rim(patch_.origin(doomed)) || !collapse_is_good(doomed)) continue;
+    patch_.collapse(doomed);
+  }
+}
+
+void Remesher::smooth_along_surface() {
+  std::vector<Vector3> moved(patch_.positions());
+  std::vector<double> sizes(target_);
+  for (Index v = static_cast<Index>(patch_.rim_size()); v < patch_.vertex_count(); ++v) {
+    if (!patch_.vertex_alive(v)) continue;
+    Vector3 normal = Vector3::Zero(), centre = Vector3::Zero();
+    double weight = 0, size = 0;
+    int neighbours = 0;
+    patch_.for_outgoing(v, [&](Index out) {
+      const Vector3 area = patch_.area_normal(out / 3);
+      const double relative = area.norm() / std::max(target_[v] * target_[v], 1e-300);
+      normal += area;
+      const Vector3 middle =
+          (patch_.position(v) + patch_.position(patch_.target(out)) + patch_.position(patch_.apex(out))) / 3.0;
+      centre += relative * middle;
+      weight += relative;
+      size += target_[patch_.target(out)];
+      ++neighbours;
+    });
+    sizes[v] = size / neighbours;
+    if (!(weight > 0) || !(normal.norm() > 0)) continue;
+    normal.normalize();
+    const Vector3 step = centre / weight - patch_.position(v);
+    moved[v] += smoothing_step * (step - normal * normal.dot(step));
+  }
+  for (Index v = static_cast<Index>(patch_.rim_size()); v < patch_.vertex_count(); ++v)
+    if (patch_.vertex_alive(v)) patch_.move(v, moved[v]);
+  target_ = sizes;
+}
+
+void Remesher::split_forbidden() {
+  const Index half_edges = static_cast<Index>(3 * patch_.triangle_count());
+  for (Index h = 0; h < half_edges; ++h)
+    if (patch_.alive(h / 3) && !patch_.is_boundary(h) && forbidden(patch_.origin(h), patch_.target(h))) split(h);
+}
+
+void Remesher::compact() {
+  std::size_t kept = 0;
+  for (Index v = 0; v < patch_.vertex_count(); ++v)
+    if (patch_.vertex_alive(v) || patch_.on_rim(v)) target_[kept++] = target_[v];
+  target_.resize(kept);
+  patch_.compact();
+}
+
+}  // namespace
+
+void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options, const Progress& progress) {
+  Remesher remesher(patch, target, options);
+  remesher.flip_all();
+  remesher.split_long_edges(progress);
+  remesher.split_forbidden();
+}
+
+void remesh(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options, const Progress& progress) {
+  Remesher remesher(patch, target, options);
+  for (int round = 0; round < options.rounds; ++round) {
+    remesher.split_long_edges(progress);
+    remesher.collapse_short_edges();
+    remesher.flip_all();
+    remesher.smooth_along_surface();
+    remesher.flip_all();
+    progress.update((round + 1.0) / options.rounds);
+  }
+  remesher.split_forbidden();
+  remesher.compact();
+}
+
+}  // namespace meshcomplete

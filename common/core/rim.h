@@ -1,0 +1,25 @@
+// The mesh round a hole: what a patch continues, and what it must not double.
+#pragma once
+
+#include "common/core/boundary_loops.h"
+#include "common/core/mesh.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/patch_remeshing.h"
+
+#include <vector>
+
+namespace meshcomplete {
+
+struct Rim {
+  std::vector<Vector3> positions;   ///< of the loop's vertices, in its order
+  /// The faces in the fans between the loop's edges (the one-ring), as a mesh of its own whose first vertices are the
+  /// loop's in its order.
+  TriangleMesh ring;
+  std::vector<double> edge_length;  ///< per loop vertex: mean length of the ring's edges near it, the resolution to match
+  ForbiddenEdges forbidden;         ///< positions in the loop of vertices that an input edge joins
+};
+
+/// Cost: O(faces of the ring).
+Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop);
+
+}  // namespace meshcomplete

@@ -1,0 +1,49 @@
+// The only place where a mesh of MeshLab is changed: a patch is appended to it, or to a copy of it in a new
+// layer.
+#pragma once
+
+#include <QString>
+
+#include "common/core/mesh.h"
+#include "common/core/patch.h"
+#include "common/host/meshlab_version.h"
+
+namespace meshcomplete {
+namespace host {
+
+struct AppendOptions {
+  /// The new faces become the face selection, as in MeshLab's own Close Holes; otherwise the selection stays
+  /// as it is.
+  bool select_new_faces = false;
+};
+
+/// Where the patch went: it stands at the end of the vertex and of the face list.
+struct Appended {
+  std::size_t first_vertex = 0;
+  std::size_t vertices = 0;
+  std::size_t first_face = 0;
+  std::size_t faces = 0;
+};
+
+/// Appends `patch` to the layer whose snapshot it was made for. Existing vertices and faces keep their
+/// positions, order, normals, colours, quality, texture coordinates, custom attributes and flags (except the
+/// face selection, see the options), bit for bit. New vertices get normals; colour, quality, radius and
+/// texture coordinates, where the layer has them, are interpolated from the rim, and so are the new faces'
+/// colour, quality and wedge texture coordinates. Adjacency that the layer holds is computed anew; the
+/// bounding box grows. An empty patch changes nothing. `mesh` is the snapshot's mesh. Throws before anything
+/// is changed.
+Appended append_patch(MeshModel& model, const TriangleMesh& mesh, const Patch& patch,
+                      const AppendOptions& options = AppendOptions());
+
+/// Adds a layer named `name` that is a complete copy of `model` with the patch appended, makes it the current
+/// layer and leaves `model` as it is. Deleted elements are not copied. Custom attributes of the usual types
+/// (numbers, points, colours) are copied. When it throws, the document is as before.
+MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, const TriangleMesh& mesh,
+                                const Patch& patch, const QString& name,
+                                const AppendOptions& options = AppendOptions());
+
+/// Adds a layer that holds `mesh` alone. The current layer stays current.
+MeshModel& add_layer(MeshDocument& document, const TriangleMesh& mesh, const QString& name);
+
+}  // namespace host
+}  // namespace meshcomplete

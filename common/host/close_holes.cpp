@@ -1,0 +1,62 @@
+#include "common/host/close_holes.h"
+
+#include <chrono>
+
+#include "common/host/append.h"
+#include "common/host/hole_log.h"
+#include "common/host/snapshot.h"
+
+namespace meshcomplete {
+namespace host {
+namespace {
+
+/// Adds the wall time between construction and `stop` to the report.
+class Stopwatch {
+ public:
+  void stop(CompletionReport& report, const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    report.stage_seconds.emplace_back(stage, std::chrono::duration<double>(now - start_).count());
+    start_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void append_result(FilterRun& run, MeshModel& model, const Snapshot& input, const ClosedHoles& result) {
+  const Patch& patch = result.completion.patch;
+  AppendOptions options;
+  options.select_new_faces = run.parameters.boolean("NewFaceSelected");
+  const QString name = model.label();
+  if (run.parameters.boolean("AsNewLayer") && !patch.empty())
+    append_patch_to_copy(run.document, model, input.mesh, patch, name + " (closed)", options);
+  else
+    append_patch(model, input.mesh, patch, options);
+  for (const ExtraLayer& layer : result.layers)
+    if (!layer.mesh.triangles.empty())
+      add_layer(run.document, layer.mesh, QString("%1 (%2)").arg(name, layer.suffix));
+}
+
+}  // namespace
+
+void close_holes(FilterRun& run, const CloseHolesAlgorithm& algorithm) {
+  const HoleSelectionOptions holes = hole_selection_options(run.parameters);
+  MeshModel& model = *run.document.mm();
+  Stopwatch watch;
+  const Snapshot input = snapshot(model);
+  run.progress.check();
+  CompletionReport reading;
+  watch.stop(reading, "reading the mesh");
+  const ClosedHoles result =
+      algorithm(input.mesh, input.selection, holes, run.progress.part(0.02, 0.95, "closing holes"));
+  run.report = result.completion.report;
+  run.report.stage_seconds.insert(run.report.stage_seconds.begin(), reading.stage_seconds.front());
+  run.progress.check();
+  watch = Stopwatch();
+  append_result(run, model, input, result);
+  watch.stop(run.report, "appending the patch");
+  for (const QString& line : describe_holes(run.report)) run.log(line);
+}
+
+}  // namespace host
+}  // namespace meshcomplete

@@ -1,0 +1,28 @@
+// The parameters that every "Close Holes" filter starts with.
+#pragma once
+
+#include <vector>
+
+#include "common/core/hole_selection.h"
+#include "common/host/filter_declaration.h"
+
+namespace meshcomplete {
+namespace host {
+
+/// Selected, MaxHoleEdges, MaxHolePerimeter, KeepLargest, NewFaceSelected, AsNewLayer, in this order.
+std::vector<ParameterDeclaration> close_holes_parameters();
+
+/// The shared parameters as the core understands them: 0 means "any" in the dialog. Throws CompletionError
+/// when a number of edges is given that no hole has.
+HoleSelectionOptions hole_selection_options(const ParameterValues& parameters);
+
+/// Building blocks for further parameters.
+ParameterDeclaration switch_parameter(const char* name, const char* label, const char* meaning, bool on);
+ParameterDeclaration choice_parameter(const char* name, const char* label, const char* meaning,
+                                      QStringList choices);
+ParameterDeclaration integer_parameter(const char* name, const char* label, const char* meaning,
+                                       const char* unit, int fallback, int minimum, int maximum);
+ParameterDeclaration length_parameter(const char* name, const char* label, const char* meaning);
+
+}  // namespace host
+}  // namespace meshcomplete

@@ -1,0 +1,17 @@
+// What became of each hole, as lines for MeshLab's log.
+#pragma once
+
+#include <QStringList>
+
+#include "common/core/patch.h"
+
+namespace meshcomplete {
+namespace host {
+
+/// One line per hole. When there are many, those that were closed are summed up in one line and the list of
+/// the others ends after a hundred lines with a count of the rest. The last line says how many holes were
+/// closed.
+QStringList describe_holes(const CompletionReport& report);
+
+}  // namespace host
+}  // namespace meshcomplete

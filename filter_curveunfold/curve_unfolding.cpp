@@ -1,0 +1,189 @@
+#include "filter_curveunfold/curve_unfolding.h"
+
+#include "common/core/error.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/patch_check.h"
+#include "common/core/triangle_intersection.h"
+#include "filter_curveunfold/hole_filler.h"
+
+#include <Eigen/Geometry>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace meshcomplete {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+void check_options(const CurveUnfoldingOptions& options) {
+  constexpr const char* stage = "reading the parameters";
+  const UnfoldOptions& u = options.unfolding;
+  if (options.edge_length && !(std::isfinite(*options.edge_length) && *options.edge_length > 0))
+    throw CompletionError(stage, "The edge length must be positive, or 0 for that of the mesh round the hole.");
+  if (u.restarts < 1 || u.restarts > 10000) throw CompletionError(stage, "The restarts must lie between 1 and 10000.");
+  if (!(u.min_distance >= 1e-9 && u.min_distance <= 1e-2))
+    throw CompletionError(stage, "The least distance must lie between 1e-9 and 0.01.");
+  if (!(u.cooling > 0 && u.cooling < 1)) throw CompletionError(stage, "The cooling rate must lie between 0 and 1.");
+  if (!(u.start_temperature > 0)) throw CompletionError(stage, "The start temperature must be positive.");
+}
+
+// Wall seconds between the ends of stages.
+class StageClock {
+ public:
+  explicit StageClock(CompletionReport& report) : report_(report) {}
+  void end_of(const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    report_.stage_seconds.emplace_back(stage, std::chrono::duration<double>(now - start_).count());
+    start_ = now;
+  }
+
+ private:
+  CompletionReport& report_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Corners corners_of(const TriangleMesh& mesh, const Patch& patch, const Triangle& t) {
+  const auto at = [&](Index v) {
+    return v < patch.input_vertices ? mesh.vertices[v] : patch.vertices[v - patch.input_vertices];
+  };
+  return {at(t[0]), at(t[1]), at(t[2])};
+}
+
+// All holes of one run, each filled on its own and then made to fit with the others.
+class Run {
+ public:
+  Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
+      const CurveUnfoldingOptions& options, CompletionReport& report)
+      : mesh_(mesh), loops_(loops), neighbourhood_(mesh), report_(report), filled_(loops.size()),
+        context_{mesh, topology, neighbourhood_, options} {
+    for (std::size_t i = 0; i < loops.size(); ++i)
+      if (report.holes[i].outcome == HoleOutcome::failed && report.holes[i].reason.empty()) todo_.push_back(i);
+    // Long loops first, so that no thread is left alone with the longest.
+    std::stable_sort(todo_.begin(), todo_.end(), [&](std::size_t a, std::size_t b) {
+      return loops[a].vertices.size() > loops[b].vertices.size();
+    });
+  }
+
+  void fill_all(const Progress& progress);
+  void separate(const Progress& progress);
+  CurveUnfoldingResult finish(CompletionReport report, bool unfolded_layer);
+
+ private:
+  std::vector<std::size_t> holes_in_conflict() const;
+  void record(std::size_t hole);
+
+  const TriangleMesh& mesh_;
+  const std::vector<BoundaryLoop>& loops_;
+  const InputNeighbourhood neighbourhood_;
+  CompletionReport& report_;
+  std::vector<FilledHole> filled_;
+  std::vector<std::size_t> todo_;
+  HoleFillerContext context_;
+};
+
+void Run::record(std::size_t hole) {
+  HoleReport& report = report_.holes[hole];
+  const FilledHole& filled = filled_[hole];
+  report.outcome = filled.patch.empty() ? HoleOutcome::failed : HoleOutcome::closed;
+  report.route = filled.route;
+  report.reason = filled.reason;
+  report.vertices_added = filled.patch.vertices.size();
+  report.faces_added = filled.patch.triangles.size();
+}
+
+void Run::fill_all(const Progress& progress) {
+  double total = 0;
+  for (std::size_t hole : todo_) total += static_cast<double>(loops_[hole].vertices.size());
+  tbb::parallel_for(std::size_t(0), todo_.size(), [&](std::size_t i) {
+    const std::size_t hole = todo_[i];
+    filled_[hole] = fill_hole(context_, loops_[hole], {}, progress);
+    progress.advance(static_cast<double>(loops_[hole].vertices.size()) / total);
+  });
+  for (std::size_t hole : todo_) record(hole);
+}
+
+// Holes whose patch meets the patch of a hole that comes before them.
+std::vector<std::size_t> Run::holes_in_conflict() const {
+  std::vector<Corners> triangles;
+  std::vector<std::size_t> owner;
+  for (std::size_t hole = 0; hole < filled_.size(); ++hole)
+    for (const Triangle& t : filled_[hole].patch.triangles) {
+      triangles.push_back(corners_of(mesh_, filled_[hole].patch, t));
+      owner.push_back(hole);
+    }
+  std::vector<std::size_t> conflicts;
+  for (const auto& [a, b] : improper_pairs(triangles))
+    if (owner[a] != owner[b]) conflicts.push_back(std::max(owner[a], owner[b]));
+  std::sort(conflicts.begin(), conflicts.end());
+  conflicts.erase(std::unique(conflicts.begin(), conflicts.end()), conflicts.end());
+  return conflicts;
+}
+
+// Each patch is clean by itself; where two of them meet, the later one is tried again with the others as obstacles.
+void Run::separate(const Progress& progress) {
+  for (std::size_t hole : holes_in_conflict()) {
+    std::vector<Corners> obstacles;
+    for (std::size_t other = 0; other < filled_.size(); ++other)
+      if (other != hole)
+        for (const Triangle& t : filled_[other].patch.triangles)
+          obstacles.push_back(corners_of(mesh_, filled_[other].patch, t));
+    filled_[hole] = fill_hole(context_, loops_[hole], obstacles, progress);
+    record(hole);
+  }
+}
+
+// The flat triangulations, one beside the other in the plane z = 0.
+TriangleMesh lay_out(const std::vector<FilledHole>& filled) {
+  TriangleMesh sheet;
+  double left = 0;
+  for (const FilledHole& hole : filled) {
+    if (hole.patch.empty()) continue;
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& p : hole.polygon) box.extend(p);
+    const Index first = static_cast<Index>(sheet.vertices.size());
+    for (const Eigen::Vector2d& p : hole.polygon)
+      sheet.vertices.push_back(as_stored(Vector3(p.x() - box.min().x() + left, p.y() - box.min().y(), 0)));
+    for (const Triangle& t : hole.flat) sheet.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    left += 1.1 * box.sizes().x();
+  }
+  return sheet;
+}
+
+CurveUnfoldingResult Run::finish(CompletionReport report, bool unfolded_layer) {
+  CurveUnfoldingResult result;
+  result.completion.patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
+  for (const FilledHole& filled : filled_) {
+    if (!filled.patch.empty()) append(result.completion.patch, filled.patch);
+    result.times.push_back(filled.times);
+  }
+  if (unfolded_layer) result.unfolded = lay_out(filled_);
+  result.completion.report = std::move(report);
+  return result;
+}
+
+}  // namespace
+
+CurveUnfoldingResult fill_by_curve_unfolding(const TriangleMesh& mesh, const MeshSelection& selection,
+                                             const CurveUnfoldingOptions& options, const Progress& progress) {
+  check_options(options);
+  CompletionReport report;
+  StageClock clock(report);
+  const MeshTopology topology = build_topology(mesh, progress.part(0, 0.1, "finding the boundary"));
+  const std::vector<BoundaryLoop> loops =
+      trace_boundary_loops(mesh, topology, progress.part(0.1, 0.15, "tracing boundary loops"));
+  report.holes = select_holes(mesh, loops, selection, options.holes);
+  Run run(mesh, topology, loops, options, report);
+  clock.end_of("finding the holes");
+  run.fill_all(progress.part(0.15, 0.95, "closing holes"));
+  clock.end_of("closing the holes");
+  run.separate(progress.part(0.95, 1.0, "comparing the patches"));
+  clock.end_of("comparing the patches");
+  progress.update(1.0);
+  return run.finish(std::move(report), options.unfolded_layer);
+}
+
+}  // namespace meshcomplete

@@ -1,0 +1,34 @@
+// From the flat triangulation to a minimum-energy surface in space (paper, section 3.3).
+#pragma once
+
+#include "common/core/fairing.h"
+#include "common/core/mesh.h"
+#include "common/core/progress.h"
+#include "common/core/rim.h"
+
+#include <optional>
+#include <vector>
+
+namespace meshcomplete {
+
+struct EmbeddingOptions {
+  SurfaceEnergy energy = SurfaceEnergy::thin_plate;
+  LaplacianWeights weights = LaplacianWeights::cotangent;
+  std::optional<double> edge_length;  ///< target edge length, mesh units, positive; absent: that of the rim's ring
+  double resolution = 1.0;            ///< the target edge length is divided by this
+};
+
+/// A patch over one rim. Corners below the rim's size are loop positions, the others `inner` vertices.
+struct EmbeddedPatch {
+  std::vector<Vector3> inner;
+  std::vector<Triangle> triangles;
+};
+
+/// Puts the flat triangulation `flat` of the unfolded rim onto the rim's positions in space, refines it to the resolution
+/// of the surrounding mesh, and moves the new vertices to the minimum of the energy; triangles are kept well-shaped by
+/// remeshing between the solves. Rim edges are never split. Throws `Cancelled`, CompletionError.
+/// Cost: near-linear in the vertices of the patch.
+EmbeddedPatch embed(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options,
+                    const Progress& progress = Progress());
+
+}  // namespace meshcomplete

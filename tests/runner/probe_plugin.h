@@ -1,0 +1,15 @@
+// Filters for testing the runner: they do what their parameters say, good or bad.
+#pragma once
+
+#include "common/host/filter_plugin.h"
+
+#include <QObject>
+
+class ProbePlugin : public QObject, public meshcomplete::host::FilterPlugin {
+  Q_OBJECT
+  MESHCOMPLETE_FILTER_PLUGIN
+
+ public:
+  ProbePlugin();
+  QString pluginName() const override { return "ProbePlugin"; }
+};

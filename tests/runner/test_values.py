@@ -1,0 +1,142 @@
+"""Parameter values, scripts, and mixing filters."""
+
+import math
+import unittest
+
+from runner_case import Ply, RunnerCase
+
+PROBE = "Probe: Everything"
+
+
+class Values(RunnerCase):
+    def setUp(self):
+        super().setUp()
+        self.vertices, self.faces = self.make_sphere()
+
+    def logged(self, *parameters, **options):
+        """The values that the filter got."""
+        result = self.check(0, "-i", "sphere.ply", "-f", PROBE, "-p", *parameters, "-o", "out.ply", **options)
+        (line,) = [line for line in result.stdout.split("\n") if line.startswith("Count=")]
+        return dict(part.split("=", 1) for part in line.split(" "))
+
+    def wrong(self, parameter):
+        return self.check(2, "-i", "sphere.ply", "-f", PROBE, "-p", parameter, "-o", "out.ply").stderr
+
+    def test_numbers(self):
+        self.assertEqual(self.logged("Count=0")["Count"], "0")
+        self.assertEqual(self.logged("Count= 100 ")["Count"], "100")
+        self.assertEqual(float(self.logged("Real=-1.5e-3")["Real"]), -0.0015)
+        for bad, expected in (("Count=101", "out of range"), ("Count=-1", "out of range"), ("Count=5.5", "whole number"),
+                              ("Count=", "whole number"), ("Count=99999999999", "too large"), ("Real=1,5", "point"),
+                              ("Real=nan", "too large"), ("Real=1e39", "too large"), ("Real=x", "not a number")):
+            with self.subTest(bad):
+                self.assertIn(expected, self.wrong(bad))
+
+    def test_booleans(self):
+        for yes in ("true", "True", "1", "yes", "on"):
+            result = self.run_program("-i", "sphere.ply", "-f", PROBE, "-p", "Fail=" + yes)
+            self.assertEqual(result.returncode, 1)
+        for no in ("false", "0", "no", "OFF"):
+            self.logged("Fail=" + no)
+        self.assertIn("neither true nor false", self.wrong("Fail=2"))
+
+    def test_lengths(self):
+        self.assertEqual(float(self.logged("Length=0.125")["Length"]), 0.125)
+        diagonal = math.dist(*[[pick(v[axis] for v in self.vertices) for axis in range(3)] for pick in (min, max)])
+        self.assertAlmostEqual(float(self.logged("Length=2%")["Length"]), 0.02 * diagonal, places=5)
+        self.assertIn("out of range", self.wrong("Length=-1"))
+        self.assertIn("not a number", self.wrong("Length=two%"))
+
+    def test_choices(self):
+        self.assertEqual(self.logged("Kind=2")["Kind"], "2")
+        self.assertEqual(self.logged("Kind=Automatic")["Kind"], "0")
+        self.assertIn('Did you mean "descent"?', self.wrong("Kind=decsent"))
+        self.assertIn("0 = automatic", self.wrong("Kind=3"))
+
+    def test_text_is_taken_as_it_is(self):
+        self.assertEqual(self.logged("Text=a=b'\"<&>")["Text"], "a=b'\"<&>")
+        self.assertEqual(self.logged("Text=")["Text"], "")
+
+    def test_decimal_comma_locales(self):
+        for locale in ("de_DE.UTF-8", "fr_FR", "C", "tr_TR.UTF-8"):
+            values = self.logged("Real=1.25", environment={"LC_ALL": locale, "LANG": locale})
+            self.assertEqual(values["Real"], "1.25")
+
+    def test_defaults_equal_explicit_defaults(self):
+        self.logged("Count=5")
+        implicit = Ply(self.path("out.ply"))
+        self.logged("Fail=false", "Change=true", "Count=5", "Real=0.5", "Seconds=0", "Length=0.25", "Kind=annealing",
+                    "Outcome=closed", "Text=abc")
+        explicit = Ply(self.path("out.ply"))
+        self.assertEqual(implicit.elements, explicit.elements)
+
+
+class Scripts(RunnerCase):
+    def script(self, *filters):
+        with open(self.path("script.mlx"), "w") as file:
+            file.write("<!DOCTYPE FilterScript>\n<FilterScript>\n" + "\n".join(filters) + "\n</FilterScript>\n")
+        return self.path("script.mlx")
+
+    def test_parameters_left_out_have_defaults(self):
+        self.make_sphere()
+        script = self.script('<filter name="Probe: Everything"><Param name="Real" type="RichFloat" value="7"/></filter>')
+        result = self.check(0, "-i", "sphere.ply", "-s", script, "-o", "out.ply")
+        self.assertIn("Count=5 Real=7 Length=0.25 Kind=1 Text=abc", result.stdout)
+
+    def test_misspelt_parameter_of_ours_and_of_meshlab(self):
+        self.make_sphere()
+        for name, wrong, right in (("Probe: Everything", "Reel", "Real"), ("Close Holes", "Selectd", "Selected")):
+            script = self.script(f'<filter name="{name}"><Param name="{wrong}" value="1"/></filter>')
+            result = self.check(2, "-i", "sphere.ply", "-s", script, "-o", "out.ply")
+            self.assertIn(f'Did you mean "{right}"?', result.stderr)
+
+    def test_mixing_with_meshlabs_filters(self):
+        _, faces = self.make_sphere()
+        script = self.script('<filter name="Close Holes"><Param name="MaxHoleSize" value="100" type="RichInt"/></filter>',
+                             '<filter name="Probe: Everything"/>')
+        self.check(0, "-i", "sphere.ply", "-s", script, "-f", "Compute Geometric Measures", "-o", "out.ply", "--report",
+                   "report.json")
+        report = self.read_report()
+        self.assertEqual([ran["name"] for ran in report["filters"]],
+                         ["Close Holes", "Probe: Everything", "Compute Geometric Measures"])
+        # The hole of three quads is closed with six triangles, and the probe adds one.
+        self.assertEqual(report["outputs"][0]["faces"], len(faces) + 6 + 1)
+
+    def test_colours_and_points_in_scripts(self):
+        self.make_sphere()
+        script = self.script('<filter name="Vertex Color Filling"><Param name="color1" type="RichColor" r="10" g="20" '
+                             'b="30" a="255"/></filter>')
+        self.check(0, "-i", "sphere.ply", "-s", script, "-o", "out.ply")
+        vertex = Ply(self.path("out.ply")).elements["vertex"][0]
+        self.assertEqual([vertex[name] for name in ("red", "green", "blue", "alpha")], [10, 20, 30, 255])
+
+    def test_layers_by_number_and_name(self):
+        self.make_sphere("a.ply")
+        self.make_sphere("b.ply", hole=False)
+        for second in ("1", "b.ply"):
+            result = self.check(0, "-i", "a.ply", "b.ply", "-f", "Hausdorff Distance", "-p", "SampledMesh=0",
+                                "TargetMesh=" + second)
+            self.assertIn("Hausdorff Distance computed", result.stdout)
+        result = self.check(2, "-i", "a.ply", "-f", "Hausdorff Distance", "-p", "TargetMesh=3")
+        self.assertIn("1 layers", result.stderr)
+
+    def test_filter_that_makes_a_mesh(self):
+        self.check(0, "-f", "Sphere", "-p", "subdiv=2", "-o", "out.ply")
+        self.assertEqual(len(Ply(self.path("out.ply")).triangles), 320)
+
+    def test_filter_that_needs_opengl(self):
+        self.make_sphere()
+        self.assertIn("OpenGL", self.check(1, "-i", "sphere.ply", "-f", "Ambient Occlusion", "-o", "out.ply").stderr)
+
+    def test_project_in_and_out(self):
+        self.make_sphere("a.ply")
+        self.make_sphere("b.ply", hole=False)
+        self.check(0, "-i", "a.ply", "b.ply", "-w", "both.mlp")
+        self.check(0, "-p", "both.mlp", "-f", PROBE, "-o", "first.ply", "-l", "0", "-o", "last.ply", "-l", "x")
+        counts = {name: len(Ply(self.path(name)).triangles) for name in ("a.ply", "b.ply", "first.ply", "last.ply")}
+        self.assertEqual(counts["first.ply"], counts["a.ply"])
+        self.assertEqual(counts["last.ply"], counts["b.ply"] + 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

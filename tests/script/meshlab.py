@@ -1,0 +1,120 @@
+"""Runs MeshLab's own meshlabserver, with our plugins, on filter scripts."""
+import os
+import signal
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import mesh_files
+
+SOURCE = Path(os.environ.get("MESHCOMPLETE_SOURCE", Path(__file__).resolve().parents[2]))
+BUILD = Path(os.environ.get("MESHCOMPLETE_BUILD", SOURCE / "build"))
+STAGED = BUILD / "meshlab-staged"
+
+CLOSE_HOLES = [("RichBool", "Selected", "false"), ("RichInt", "MaxHoleEdges", "0"),
+               ("RichAbsPerc", "MaxHolePerimeter", "0"), ("RichBool", "KeepLargest", "false"),
+               ("RichBool", "NewFaceSelected", "false"), ("RichBool", "AsNewLayer", "false")]
+
+# MeshLab 2020.09 stops with an assertion unless a script gives every parameter, in the filter's order.
+FILTERS = {
+    "Close Holes: Curve Unfolding": CLOSE_HOLES + [
+        ("RichEnum", "Energy", "0"), ("RichEnum", "Weights", "0"), ("RichEnum", "Unfolding", "0"),
+        ("RichInt", "Restarts", "100"), ("RichInt", "Seed", "1"), ("RichAbsPerc", "EdgeLength", "0"),
+        ("RichBool", "UnfoldedLayer", "false")],
+    "Check Completion": [("RichBool", "SelfIntersections", "true")],
+    "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
+    "Select Border": [],
+}
+
+
+def step(name, **values):
+    """One filter of a script, with defaults for the parameters that are not given."""
+    parameters = [(kind, key, str(values.pop(key, default))) for kind, key, default in FILTERS[name]]
+    if values:
+        raise KeyError(f"{name} has no parameter {sorted(values)}")
+    return name, parameters
+
+
+def script_text(steps):
+    lines = ["<!DOCTYPE FilterScript>", "<FilterScript>"]
+    for name, parameters in steps:
+        lines.append(f" <filter name={quoteattr(name)}>")
+        for kind, key, value in parameters:
+            more = {"RichAbsPerc": ' min="0" max="1"', "RichEnum": ' enum_cardinality="1" enum_val0="x"'}.get(kind, "")
+            lines.append(f'  <Param type="{kind}" name="{key}" value={quoteattr(value)}{more}/>')
+        lines.append(" </filter>")
+    return "\n".join(lines + ["</FilterScript>", ""])
+
+
+def run_in_display(command, folder, timeout=120):
+    """Runs a program with a virtual display; returns its exit code and what it printed."""
+    environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}
+    process = subprocess.Popen(["xvfb-run", "-a", *command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, cwd=folder, env=environment, start_new_session=True)
+    try:
+        console = process.communicate(timeout=timeout)[0]
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        raise
+    return process.returncode, console.decode(errors="replace")
+
+
+class Run:
+    """What one call of meshlabserver did."""
+
+    def __init__(self, code, log, console, output):
+        self.code, self.log, self.console, self.output = code, log, console, output
+
+    @property
+    def saved(self):
+        return self.output.exists()
+
+    def __str__(self):
+        return f"exit code {self.code}\n--- log\n{self.log}\n--- console\n{self.console}"
+
+
+class MeshLabTest(unittest.TestCase):
+    """Gives every test a folder of its own (with a space in its name) and runs meshlabserver in it."""
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="mesh complete ")
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+
+    def server(self, mesh, steps, attributes=(), output="out.ply"):
+        out, log, script = self.folder / output, self.folder / "log.txt", self.folder / "script.mlx"
+        for stale in (out, log):
+            stale.unlink(missing_ok=True)
+        arguments = ["-l", str(log), "-i", str(mesh), "-o", str(out)]
+        if attributes:
+            arguments += ["-m", *attributes]
+        if steps:
+            script.write_text(script_text(steps))
+            arguments += ["-s", str(script)]
+        code, console = run_in_display([str(STAGED / "bin/meshlabserver"), *arguments], self.folder)
+        text = log.read_text(errors="replace") if log.exists() else ""
+        return Run(code, text, console, out)
+
+    def close(self, mesh, attributes=(), name="Close Holes: Curve Unfolding", **values):
+        return self.server(mesh, [step(name, **values)], attributes)
+
+    def untouched(self, mesh, attributes=()):
+        """The mesh as MeshLab itself writes it when no filter has run."""
+        run = self.server(mesh, [], attributes, output="untouched.ply")
+        self.assertTrue(run.saved, run)
+        return mesh_files.Ply(run.output)
+
+    def assert_kept(self, before, run):
+        self.assertTrue(run.saved, run)
+        after = mesh_files.Ply(run.output)
+        self.assertIsNone(mesh_files.difference(before, after), run)
+        return after
+
+    def assert_refused(self, run, *phrases):
+        """The filter failed with this message: no crash, and nothing was written."""
+        self.assertEqual(run.code, 255, run)
+        self.assertFalse(run.saved, run)
+        for phrase in phrases:
+            self.assertIn(phrase, run.log, run)

@@ -1,0 +1,141 @@
+"""Our filters in MeshLab's own meshlabserver: holes closed, the input kept bit for bit, messages in the log."""
+import sys
+import unittest
+
+import mesh_files
+from meshlab import SOURCE, MeshLabTest, step
+
+ELEPHANT = SOURCE / ".cache/data/elephant-with-holes.off"
+
+
+class CloseHoles(MeshLabTest):
+    def band(self, **arguments):
+        path = self.folder / "band.ply"
+        mesh_files.write_ply(path, *mesh_files.band(**arguments))
+        return path
+
+    def test_closes_both_holes(self):
+        mesh = self.band()
+        before = self.untouched(mesh)
+        run = self.close(mesh)
+        after = self.assert_kept(before, run)
+        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+        self.assertIn("Closed 2 of 2 holes.", run.log)
+        self.assertGreater(len(after.positions), len(before.positions), "patches are refined")
+
+    def test_keeps_colours_quality_and_normals(self):
+        vertices, faces = mesh_files.band()
+        path = self.folder / "coloured.ply"
+        vertex_extra = [("float", "nx"), ("float", "ny"), ("float", "nz"), ("uchar", "red"), ("uchar", "green"),
+                        ("uchar", "blue"), ("uchar", "alpha"), ("float", "quality")]
+        face_extra = [("uchar", "red"), ("uchar", "green"), ("uchar", "blue"), ("uchar", "alpha"), ("float", "quality")]
+        mesh_files.write_ply(
+            path, vertices, faces, vertex_extra, face_extra,
+            [(0.0, 0.6, 0.8, i % 256, 2 * i % 256, 3 * i % 256, 255, 0.5 * i) for i in range(len(vertices))],
+            [(5 * i % 256, 7 * i % 256, i % 256, 255, 0.25 * i) for i in range(len(faces))])
+        attributes = ("vc", "vq", "vn", "fc", "fq")
+        before = self.untouched(path, attributes)
+        self.assertIn(["uchar", "red"], before.properties["face"])
+        run = self.close(path, attributes)
+        after = self.assert_kept(before, run)
+        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+
+    def test_only_selected_holes(self):
+        mesh = self.band()
+        run = self.server(mesh, [step("Select Border"), step("Close Holes: Curve Unfolding", Selected="true")])
+        self.assertIn("Closed 2 of 2 holes.", run.log)
+        run = self.server(mesh, [step("Close Holes: Curve Unfolding", Selected="true")])
+        self.assert_refused(run, "Close Holes: Curve Unfolding failed:", "elect")
+
+    def test_holes_that_are_too_large_stay_open(self):
+        mesh = self.band()
+        before = self.untouched(mesh)
+        for values in ({"MaxHoleEdges": 23}, {"MaxHolePerimeter": 0.01}):
+            run = self.close(mesh, **values)
+            after = self.assert_kept(before, run)
+            self.assertEqual(len(after.faces), len(before.faces), run)
+            self.assertIn("Closed 0 of 2 holes", run.log)
+
+    def test_the_largest_hole_can_be_kept(self):
+        vertices, faces = mesh_files.band()
+        path = self.folder / "uneven.ply"
+        mesh_files.write_ply(path, vertices, faces[2 * 24:])  # without the lowest ring: its hole is larger
+        run = self.close(path, KeepLargest="true")
+        after = self.assert_kept(self.untouched(path), run)
+        self.assertEqual(mesh_files.boundary_edges(after.faces), 24, run)
+        self.assertIn("Closed 1 of 2 holes", run.log)
+
+    def test_a_second_run_finds_nothing_to_do(self):
+        filter_step = step("Close Holes: Curve Unfolding")
+        run = self.server(self.band(), [filter_step, filter_step])
+        self.assertIn("The mesh has no holes: there is nothing to close.", run.log)
+
+    def test_every_energy_and_unfolding(self):
+        mesh = self.band(segments=16, rings=5)
+        before = self.untouched(mesh)
+        for values in ({"Energy": 1}, {"Energy": 2}, {"Weights": 1}, {"Unfolding": 1}, {"Unfolding": 2}):
+            run = self.close(mesh, **values)
+            after = self.assert_kept(before, run)
+            self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+
+    def test_an_edge_length_is_kept_to(self):
+        mesh = self.band()
+        counts = []
+        for length in (0.4, 0.05):
+            run = self.close(mesh, EdgeLength=length)
+            after = self.assert_kept(self.untouched(mesh), run)
+            counts.append(len(after.faces))
+        self.assertGreater(counts[1], 4 * counts[0])
+
+    def test_parameters_out_of_range_are_refused(self):
+        mesh = self.band()
+        for values, message in (({"Restarts": 0}, 'Parameter "Restarts" must lie between 1 and 10000 runs; it is 0.'),
+                                ({"MaxHoleEdges": -1}, 'Parameter "MaxHoleEdges" must lie between 0'),
+                                ({"MaxHoleEdges": 2}, "at least 3"),
+                                ({"EdgeLength": -0.5}, 'Parameter "EdgeLength" must be at least 0'),
+                                ({"Energy": 3}, 'Parameter "Energy": 3 is not one of its 3 choices')):
+            with self.subTest(**values):
+                self.assert_refused(self.close(mesh, **values), message)
+
+    def test_a_real_model(self):
+        self.assertTrue(ELEPHANT.exists(), "scripts/fetch_demo.sh elephant-with-holes.off fetches this mesh")
+        before = self.untouched(ELEPHANT)
+        run = self.close(ELEPHANT)
+        after = self.assert_kept(before, run)
+        self.assertRegex(run.log, r"Closed \d+ of 106 holes")
+        self.assertLess(mesh_files.boundary_edges(after.faces), 0.1 * mesh_files.boundary_edges(before.faces), run)
+        _, directed = mesh_files.edge_counts(after.faces[len(before.faces):])
+        self.assertTrue(all(count == 1 for count in directed.values()), "new faces agree on their orientation")
+
+
+class CheckCompletion(MeshLabTest):
+    def check(self, vertices, faces):
+        path = self.folder / "checked.ply"
+        mesh_files.write_ply(path, vertices, faces)
+        before = self.untouched(path)
+        run = self.server(path, [step("Check Completion")])
+        self.assertEqual(run.code, 0, run)
+        after = self.assert_kept(before, run)
+        self.assertEqual(len(after.faces), len(before.faces))
+        return run.log
+
+    def test_says_what_is_open(self):
+        self.assertRegex(self.check(*mesh_files.band(segments=20)), r"(?i)boundary.*\b40\b|\b20\b.*\b20\b")
+
+    def test_counts_intersections(self):
+        first, faces = mesh_files.band(segments=16, rings=7)
+        second, _ = mesh_files.band(segments=16, rings=7, centre=(0.5, 0.0, 0.0))
+        shifted = [tuple(corner + len(first) for corner in face) for face in faces]
+        log = self.check(first + second, faces + shifted)
+        self.assertRegex(log, r"(?i)intersect[^\n]*[1-9]|[1-9][^\n]*intersect")
+
+    def test_after_closing_nothing_is_open(self):
+        path = self.folder / "band.ply"
+        mesh_files.write_ply(path, *mesh_files.band())
+        run = self.server(path, [step("Close Holes: Curve Unfolding"), step("Check Completion")])
+        self.assertEqual(run.code, 0, run)
+        self.assertIn("Boundary edges: 0", run.log)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main(verbosity=2))
