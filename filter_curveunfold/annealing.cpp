@@ -1,36 +1,42 @@
 #include "filter_curveunfold/annealing.h"
 
-#include "filter_curveunfold/loop_tree.h"
-#include "filter_curveunfold/safe_motion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "filter_curveunfold/loop_tree.h"
+#include "filter_curveunfold/safe_motion.h"
 
 namespace meshcomplete {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Random steps at one temperature. Longer runs find no more: what unfolds does so while the loop is still hot.
+/// Random steps at one temperature. Longer runs find no more: what unfolds does so while the loop is still
+/// hot.
 constexpr std::size_t steps_per_level = 60;
 
-/// Accepted steps from one try of the projection to the next. A low energy does not make a projection simple (a rim
-/// that winds twice has almost none), so that waiting for the end of the run would miss most successes.
+/// Accepted steps from one try of the projection to the next. A low energy does not make a projection simple
+/// (a rim that winds twice has almost none), so that waiting for the end of the run would miss most
+/// successes.
 constexpr std::size_t steps_per_projection = 2;
 
-/// A run ends at this share of the start temperature: nothing is accepted any more that does not lower the energy.
+/// A run ends at this share of the start temperature: nothing is accepted any more that does not lower the
+/// energy.
 constexpr double end_temperature_share = 1e-3;
 
-/// After a step that lowered the energy the next directions stay within this angle of the last (paper: 10 degrees).
+/// After a step that lowered the energy the next directions stay within this angle of the last (paper: 10
+/// degrees).
 constexpr double cone_angle = 10 * pi / 180;
 
-/// Steps use no more than this share of the distance at which segments could touch, so that rounding cannot matter.
+/// Steps use no more than this share of the distance at which segments could touch, so that rounding cannot
+/// matter.
 constexpr double safety = 0.9;
 
-/// Steps that take more than this share of the greatest room that the run has had so far are rejected. The length of a
-/// step is proportional to the room: without this the walk shrinks its own steps and freezes on the constraint.
+/// Steps that take more than this share of the greatest room that the run has had so far are rejected. The
+/// length of a step is proportional to the room: without this the walk shrinks its own steps and freezes on
+/// the constraint.
 constexpr double kept_room = 0.5;
 
 /// Random numbers that are the same with every standard library (whose distributions are not).
@@ -74,8 +80,8 @@ Room room_of(const Loop& loop, const LoopTree& tree, double distance_bound) {
 std::optional<Polygon> flattened(const Loop& loop) { return simple_projection(loop, 0); }
 
 /// One run. Returns the polygon when it succeeded.
-std::optional<Polygon> run(const Loop& start, const UnfoldOptions& options, Random& random, std::size_t& steps,
-                           const Progress& progress, const AnnealingObserver& observer) {
+std::optional<Polygon> run(const Loop& start, const UnfoldOptions& options, Random& random,
+                           std::size_t& steps, const Progress& progress, const AnnealingObserver& observer) {
   const std::size_t n = start.size();
   Loop loop = start, candidate(n);
   double energy = planarity_energy(loop);

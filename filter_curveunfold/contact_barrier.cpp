@@ -1,10 +1,10 @@
 #include "filter_curveunfold/contact_barrier.h"
 
-#include "filter_curveunfold/loop_tree.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "filter_curveunfold/loop_tree.h"
 
 namespace meshcomplete {
 namespace {
@@ -55,10 +55,11 @@ double ContactBarrier::add_derivatives(const Loop& loop, Eigen::MatrixX3d& gradi
     sum += strength * (reach - d) * (reach - d) / (reach * reach * d);
     const double slope = -strength * (reach * reach - d * d) / (reach * reach * d * d);
     const double curvature = 2 * strength / (d * d * d);
-    const std::array<Eigen::Index, 4> points = {static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i + 1),
-                                                static_cast<Eigen::Index>(j),
-                                                static_cast<Eigen::Index>((j + 1) % n)};
-    const std::array<double, 4> weights = {1 - closest.first, closest.first, closest.second - 1, -closest.second};
+    const std::array<Eigen::Index, 4> points = {
+        static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i + 1), static_cast<Eigen::Index>(j),
+        static_cast<Eigen::Index>((j + 1) % n)};
+    const std::array<double, 4> weights = {1 - closest.first, closest.first, closest.second - 1,
+                                           -closest.second};
     for (std::size_t a = 0; a < 4; ++a) {
       gradient.row(points[a]) += (slope * weights[a] / d) * closest.difference.transpose();
       for (std::size_t b = 0; b < 4; ++b) {

@@ -1,7 +1,5 @@
 #include "filter_curveunfold/knot.h"
 
-#include "filter_curveunfold/loop_tree.h"
-
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
@@ -12,12 +10,15 @@
 #include <utility>
 #include <vector>
 
+#include "filter_curveunfold/loop_tree.h"
+
 namespace meshcomplete {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// The two largest primes below 2^31: products fit 64 bits, and together they tell all values up to 2^61 apart.
+/// The two largest primes below 2^31: products fit 64 bits, and together they tell all values up to 2^61
+/// apart.
 constexpr std::array<std::uint64_t, 2> primes = {2147483647u, 2147483629u};
 
 /// Directions of projection that are tried; the one with the fewest crossings is used.
@@ -26,10 +27,12 @@ constexpr int tried_directions = 12;
 /// More would take longer than a user waits for a hole.
 constexpr std::size_t most_crossings = 1000;
 
-/// Crossings along an edge nearer than this share of the edge are not told apart: the direction is not generic.
+/// Crossings along an edge nearer than this share of the edge are not told apart: the direction is not
+/// generic.
 constexpr double least_parameter_gap = 1e-11;
 
-/// Rotating a loop of size 1 moves its points by some 1e-16; strands this far apart cannot pass through each other.
+/// Rotating a loop of size 1 moves its points by some 1e-16; strands this far apart cannot pass through each
+/// other.
 constexpr double least_strand_distance = 1e-13;
 
 /// One passage of an edge through a crossing.
@@ -64,7 +67,8 @@ std::optional<Diagram> diagram_along_z(const Loop& loop, std::size_t limit) {
     const auto cd_b = CGAL::orientation(flat(c), flat(d), flat(b));
     if (ab_c == ab_d && ab_c != CGAL::COLLINEAR) return true;
     if (cd_a == cd_b && cd_a != CGAL::COLLINEAR) return true;
-    if (ab_c == CGAL::COLLINEAR || ab_d == CGAL::COLLINEAR || cd_a == CGAL::COLLINEAR || cd_b == CGAL::COLLINEAR) {
+    if (ab_c == CGAL::COLLINEAR || ab_d == CGAL::COLLINEAR || cd_a == CGAL::COLLINEAR ||
+        cd_b == CGAL::COLLINEAR) {
       return false;
     }
     const auto volume = CGAL::orientation(exact_point(a), exact_point(b), exact_point(c), exact_point(d));
@@ -119,7 +123,8 @@ ColouringMatrix colouring_minor(const Diagram& diagram) {
   return matrix;
 }
 
-std::uint64_t determinant_modulo(const ColouringMatrix& matrix, std::uint64_t prime, const Progress& progress) {
+std::uint64_t determinant_modulo(const ColouringMatrix& matrix, std::uint64_t prime,
+                                 const Progress& progress) {
   const std::size_t n = matrix.size();
   std::vector<std::vector<std::uint64_t>> m(n, std::vector<std::uint64_t>(n));
   for (std::size_t i = 0; i < n; ++i) {

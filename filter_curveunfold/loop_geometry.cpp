@@ -1,15 +1,14 @@
 #include "filter_curveunfold/loop_geometry.h"
 
-#include "filter_curveunfold/loop_tree.h"
-
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "filter_curveunfold/loop_tree.h"
 
 namespace meshcomplete {
 namespace {
@@ -36,9 +35,10 @@ Eigen::Matrix3d covariance(const Loop& loop) {
   return sum / static_cast<double>(loop.size());
 }
 
-/// How well a projection shows the loop: the share of the edges' length that is left, plus the square root of the
-/// smallest share that any edge keeps (one edge of length zero is worse than many that are a little shorter), plus the
-/// share of the greatest area (a polygon seen from its edge keeps its lengths and is a sliver all the same).
+/// How well a projection shows the loop: the share of the edges' length that is left, plus the square root of
+/// the smallest share that any edge keeps (one edge of length zero is worse than many that are a little
+/// shorter), plus the share of the greatest area (a polygon seen from its edge keeps its lengths and is a
+/// sliver all the same).
 double projection_quality(const Loop& loop, const Vector3& normal, const Vector3& area) {
   double length = 0, projected = 0, least = 1;
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -50,7 +50,8 @@ double projection_quality(const Loop& loop, const Vector3& normal, const Vector3
     if (whole > 0) least = std::min(least, flat / whole);
   }
   const double greatest_area = area.norm();
-  return projected / length + std::sqrt(least) + (greatest_area > 0 ? std::abs(normal.dot(area)) / greatest_area : 0);
+  return projected / length + std::sqrt(least) +
+         (greatest_area > 0 ? std::abs(normal.dot(area)) / greatest_area : 0);
 }
 
 std::optional<Polygon> projection_if_simple(const Loop& loop, const Vector3& normal) {
@@ -64,7 +65,8 @@ std::optional<Polygon> projection_if_simple(const Loop& loop, const Vector3& nor
   return polygon;
 }
 
-/// Squared distance from a point to a triangle's inside; infinite when the point does not lie above the inside.
+/// Squared distance from a point to a triangle's inside; infinite when the point does not lie above the
+/// inside.
 double squared_distance_above(const Vector3& p, const Vector3& a, const Vector3& ab, const Vector3& ac,
                               const Vector3& normal, double squared_normal) {
   const Vector3 ap = p - a;
@@ -119,7 +121,8 @@ ProjectionPlane plane_with_normal(const Vector3& normal) {
 
 Polygon project(const Loop& loop, const ProjectionPlane& plane) {
   Polygon polygon(loop.size());
-  for (std::size_t i = 0; i < loop.size(); ++i) polygon[i] = Vector2(loop[i].dot(plane.u), loop[i].dot(plane.v));
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    polygon[i] = Vector2(loop[i].dot(plane.u), loop[i].dot(plane.v));
   return polygon;
 }
 
@@ -156,7 +159,8 @@ std::optional<Polygon> simple_projection(const Loop& loop, int directions) {
   const Vector3 area = area_vector(loop);
   const auto first_simple = [&](const std::vector<Vector3>& normals) -> std::optional<Polygon> {
     std::vector<std::pair<double, std::size_t>> order(normals.size());
-    for (std::size_t k = 0; k < normals.size(); ++k) order[k] = {-projection_quality(loop, normals[k], area), k};
+    for (std::size_t k = 0; k < normals.size(); ++k)
+      order[k] = {-projection_quality(loop, normals[k], area), k};
     std::sort(order.begin(), order.end());
     for (const auto& [quality, k] : order) {
       if (std::optional<Polygon> polygon = projection_if_simple(loop, normals[k])) return polygon;
@@ -200,7 +204,8 @@ double squared_distance(const Vector3& a, const Vector3& b, const Vector3& c, co
 
 double squared_distance_to_triangle(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b,
                                     const Vector3& c) {
-  double best = std::min({squared_distance(p, q, a, b), squared_distance(p, q, b, c), squared_distance(p, q, c, a)});
+  double best =
+      std::min({squared_distance(p, q, a, b), squared_distance(p, q, b, c), squared_distance(p, q, c, a)});
   const Vector3 ab = b - a, ac = c - a;
   const Vector3 normal = ab.cross(ac);
   const double squared_normal = normal.squaredNorm();
@@ -208,7 +213,8 @@ double squared_distance_to_triangle(const Vector3& p, const Vector3& q, const Ve
   const double from = (p - a).dot(normal), to = (q - a).dot(normal);
   if ((from < 0) != (to < 0)) {
     const Vector3 hit = p + (q - p) * (from / (from - to));
-    if (squared_distance_above(hit, a, ab, ac, normal, squared_normal) < std::numeric_limits<double>::infinity()) {
+    if (squared_distance_above(hit, a, ab, ac, normal, squared_normal) <
+        std::numeric_limits<double>::infinity()) {
       return 0;
     }
   }
@@ -217,6 +223,12 @@ double squared_distance_to_triangle(const Vector3& p, const Vector3& q, const Ve
 }
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+std::vector<double> edge_lengths(const Loop& loop) {
+  std::vector<double> lengths(loop.size());
+  for (std::size_t i = 0; i < loop.size(); ++i) lengths[i] = (loop[(i + 1) % loop.size()] - loop[i]).norm();
+  return lengths;
+}
 
 double total_curvature(const Loop& loop) {
   const std::size_t n = loop.size();

@@ -1,12 +1,11 @@
 // Geometry of closed polygons: planes, projections, simplicity, distances between segments.
 #pragma once
 
-#include "common/core/mesh.h"
-
 #include <Eigen/Geometry>
-
 #include <optional>
 #include <vector>
+
+#include "common/core/mesh.h"
 
 namespace meshcomplete {
 
@@ -21,9 +20,9 @@ using Polygon = std::vector<Vector2>;
 /// The area that the polygon winds round, positive when counter-clockwise.
 double signed_area(const Polygon& polygon);
 
-/// Whether no two edges of the polygon meet except neighbours in their common point: no crossings, no touching, no
-/// repeated points, no edge folded back on its neighbour. Exact. Cost: near-linear in the number of points for
-/// polygons that are simple; stops at the first crossing.
+/// Whether no two edges of the polygon meet except neighbours in their common point: no crossings, no
+/// touching, no repeated points, no edge folded back on its neighbour. Exact. Cost: near-linear in the number
+/// of points for polygons that are simple; stops at the first crossing.
 bool is_simple(const Polygon& polygon);
 
 /// The plane of an orthogonal projection; `u`, `v` and `normal` are a right-handed orthonormal frame.
@@ -39,7 +38,8 @@ ProjectionPlane plane_with_normal(const Vector3& normal);
 /// Orthogonal projection along the plane's normal.
 Polygon project(const Loop& loop, const ProjectionPlane& plane);
 
-/// The normal of the plane that minimises the sum of squared distances of the loop's points (least principal axis).
+/// The normal of the plane that minimises the sum of squared distances of the loop's points (least principal
+/// axis).
 Vector3 best_fitting_normal(const Loop& loop);
 
 /// Square root of the least and of the greatest eigenvalue of the points' covariance.
@@ -49,21 +49,22 @@ struct PrincipalSpread {
 };
 PrincipalSpread principal_spread(const Loop& loop);
 
-/// The vector whose length is the area that the loop's projection along it winds round (Newell); zero when there is
-/// no such direction.
+/// The vector whose length is the area that the loop's projection along it winds round (Newell); zero when
+/// there is no such direction.
 Vector3 area_vector(const Loop& loop);
 
 /// `count` unit vectors spread evenly over a half sphere, none of them along an axis.
 std::vector<Vector3> half_sphere_directions(int count);
 
-/// A simple projection of the loop, counter-clockwise. The best-fitting plane and the plane with the greatest projected
-/// area first, then `directions` others, each time those first that shorten the edges least; the first simple
-/// projection is taken.
+/// A simple projection of the loop, counter-clockwise. The best-fitting plane and the plane with the greatest
+/// projected area first, then `directions` others, each time those first that shorten the edges least; the
+/// first simple projection is taken.
 ///
-/// Moving the loop's points to the plane along straight lines (all along the normal, in step) is free of crossings
-/// exactly when the projection is simple: the positions along the plane never change during the motion, so two
-/// points of the loop can meet only if they have the same projection, and those that have do meet at the end. The
-/// projection being simple is therefore the whole of the paper's acceptance test (section 3.1).
+/// Moving the loop's points to the plane along straight lines (all along the normal, in step) is free of
+/// crossings exactly when the projection is simple: the positions along the plane never change during the
+/// motion, so two points of the loop can meet only if they have the same projection, and those that have do
+/// meet at the end. The projection being simple is therefore the whole of the paper's acceptance test
+/// (section 3.1).
 ///
 /// Cost: a simplicity test per direction tried.
 std::optional<Polygon> simple_projection(const Loop& loop, int directions);
@@ -86,7 +87,11 @@ double squared_distance_to_triangle(const Vector3& p, const Vector3& q, const Ve
 /// The angle between two vectors, 0 to pi, accurate for all angles; 0 when one of them is zero.
 double angle_between(const Vector3& a, const Vector3& b);
 
-/// The sum of the angles by which the loop turns at its points, radians; below 4 pi certifies an unknot (Fary, Milnor).
+/// The lengths of the edges; edge i goes from point i to the next.
+std::vector<double> edge_lengths(const Loop& loop);
+
+/// The sum of the angles by which the loop turns at its points, radians; below 4 pi certifies an unknot
+/// (Fary, Milnor).
 double total_curvature(const Loop& loop);
 
 }  // namespace meshcomplete

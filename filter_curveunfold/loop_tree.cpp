@@ -28,8 +28,8 @@ bool neighbours(std::size_t i, std::size_t j, std::size_t n) {
 }  // namespace
 
 bool LoopTree::Box::overlaps(const Box& other) const {
-  return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] && other.low[1] <= high[1] &&
-         low[2] <= other.high[2] && other.low[2] <= high[2];
+  return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
+         other.low[1] <= high[1] && low[2] <= other.high[2] && other.low[2] <= high[2];
 }
 
 double LoopTree::Box::squared_distance(const Box& other) const {
@@ -112,36 +112,6 @@ double LoopTree::least_distance(const Loop& loop, double upper) const {
     }
   }
   return std::sqrt(best);
-}
-
-std::vector<double> LoopTree::clearances(const Loop& loop, double upper) const {
-  const std::size_t n = segments_;
-  std::vector<double> result(n);
-  std::vector<std::size_t> stack;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector3& from = loop[i];
-    const Vector3& to = loop[(i + 1) % n];
-    const Box& box = boxes_[leaves_ + i];
-    double best = upper * upper;
-    stack.assign(1, 1);
-    while (!stack.empty()) {
-      const std::size_t node = stack.back();
-      stack.pop_back();
-      if (is_empty(node) || boxes_[node].squared_distance(box) >= best) continue;
-      if (node >= leaves_) {
-        const std::size_t j = node - leaves_;
-        if (i == j || neighbours(i, j, n)) continue;
-        best = std::min(best, meshcomplete::squared_distance(from, to, loop[j], loop[(j + 1) % n]));
-        continue;
-      }
-      // The nearer child goes on top and is searched first.
-      const bool left_nearer = boxes_[2 * node].squared_distance(box) <= boxes_[2 * node + 1].squared_distance(box);
-      stack.push_back(left_nearer ? 2 * node + 1 : 2 * node);
-      stack.push_back(left_nearer ? 2 * node : 2 * node + 1);
-    }
-    result[i] = std::sqrt(best);
-  }
-  return result;
 }
 
 }  // namespace meshcomplete

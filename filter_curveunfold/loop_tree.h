@@ -1,17 +1,17 @@
 // A hierarchy of bounding boxes over the segments of a closed polygon, in the order of the polygon.
 #pragma once
 
-#include "filter_curveunfold/loop_geometry.h"
-
 #include <array>
 #include <cstddef>
 #include <vector>
 
+#include "filter_curveunfold/loop_geometry.h"
+
 namespace meshcomplete {
 
-/// Boxes over runs of consecutive segments: neighbours along a curve are neighbours in space, so that the order of the
-/// polygon is a good hierarchy that never has to be rebuilt when the polygon moves. Segments can be replaced and
-/// taken out. Cost: O(n) to build and to refit, O(log n) to change a segment.
+/// Boxes over runs of consecutive segments: neighbours along a curve are neighbours in space, so that the
+/// order of the polygon is a good hierarchy that never has to be rebuilt when the polygon moves. Segments can
+/// be replaced and taken out. Cost: O(n) to build and to refit, O(log n) to change a segment.
 class LoopTree {
  public:
   struct Box {
@@ -33,22 +33,19 @@ class LoopTree {
   static Box box_of(const Vector3& a, const Vector3& b);
   static Box grown(Box box, double margin);
 
-  /// Calls `visit(segment)` for the segments whose boxes overlap `box` until it returns false. Returns whether it
-  /// never did.
+  /// Calls `visit(segment)` for the segments whose boxes overlap `box` until it returns false. Returns
+  /// whether it never did.
   template <typename Visit>
   bool for_each_in_box(const Box& box, Visit&& visit) const;
 
-  /// Calls `visit(i, j)` (i < j) for pairs of segments with overlapping boxes until it returns false. Returns whether
-  /// it never did.
+  /// Calls `visit(i, j)` (i < j) for pairs of segments with overlapping boxes until it returns false. Returns
+  /// whether it never did.
   template <typename Visit>
   bool for_each_overlapping_pair(Visit&& visit) const;
 
-  /// The least distance between two segments without a common point, at most `upper` (which cuts the search short).
-  /// The loop is the one last given. Returns `upper` when no pair is nearer.
+  /// The least distance between two segments without a common point, at most `upper` (which cuts the search
+  /// short). The loop is the one last given. Returns `upper` when no pair is nearer.
   double least_distance(const Loop& loop, double upper) const;
-
-  /// For each segment the distance to the nearest segment without a common point, at most `upper`.
-  std::vector<double> clearances(const Loop& loop, double upper) const;
 
  private:
   template <typename Visit>

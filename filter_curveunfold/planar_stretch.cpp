@@ -1,11 +1,11 @@
 #include "filter_curveunfold/planar_stretch.h"
 
-#include "filter_curveunfold/repulsive_flow.h"
-#include "filter_curveunfold/triangle_moves.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "filter_curveunfold/repulsive_flow.h"
+#include "filter_curveunfold/triangle_moves.h"
 
 namespace meshcomplete {
 namespace {
@@ -18,12 +18,6 @@ constexpr double pieces_per_loop = 128;
 
 /// Edges this near to their length, as a share of it, are long enough.
 constexpr double length_tolerance = 0.05;
-
-std::vector<double> edge_lengths(const Loop& loop) {
-  std::vector<double> lengths(loop.size());
-  for (std::size_t i = 0; i < loop.size(); ++i) lengths[i] = (loop[(i + 1) % loop.size()] - loop[i]).norm();
-  return lengths;
-}
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -74,7 +68,8 @@ PlanarStretch stretched(const Polygon& polygon, const Loop& loop, int steps, con
   for (std::size_t i = 0; i < opened.size(); ++i) opened[i] = flow.loop()[i].head<2>() / scale;
   opened = reinserted(opened, reduced);
   // Rounding may spoil a bump that had next to no room; the polygon as it was is simple for certain.
-  if (made > 0 && is_simple(opened) && signed_area(opened) > 0) result = {opened, static_cast<std::size_t>(made)};
+  if (made > 0 && is_simple(opened) && signed_area(opened) > 0)
+    result = {opened, static_cast<std::size_t>(made)};
   return result;
 }
 

@@ -1,12 +1,11 @@
 #include "filter_curveunfold/repulsive_flow.h"
 
-#include "filter_curveunfold/safe_motion.h"
-
 #include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "filter_curveunfold/safe_motion.h"
 
 namespace meshcomplete {
 namespace {
@@ -17,10 +16,12 @@ constexpr double sufficient_decrease = 1e-3;
 /// Halvings of a step before the flow counts as stuck.
 constexpr int most_halvings = 12;
 
-/// No step moves a point by more than this (the loop is about 1 across): beyond it the linear model means nothing.
+/// No step moves a point by more than this (the loop is about 1 across): beyond it the linear model means
+/// nothing.
 constexpr double longest_move = 0.25;
 
-/// The most that one step changes an edge's length in order to approach its rest length, as a share of that length.
+/// The most that one step changes an edge's length in order to approach its rest length, as a share of that
+/// length.
 constexpr double most_length_change = 0.2;
 
 /// Edges that are off by more than this share of their rest length are mended before the energy is looked at.
@@ -45,8 +46,8 @@ Loop interpolated(const Loop& from, const Loop& to, double t) {
 
 }  // namespace
 
-/// Linearised constraints: row k of the Jacobian is `tangent[k]` times the difference of the displacements at the ends
-/// of edge k; for the total length there is one row, the sum of them.
+/// Linearised constraints: row k of the Jacobian is `tangent[k]` times the difference of the displacements at
+/// the ends of edge k; for the total length there is one row, the sum of them.
 struct RepulsiveFlow::Constraints {
   FlowConstraint kind;
   std::vector<Vector3> tangent;
@@ -83,7 +84,8 @@ struct RepulsiveFlow::Constraints {
       for (Eigen::Index f = 0; f < n; ++f) {
         const Eigen::Index f1 = (f + 1) % n;
         const double coupling = inverse(e1, f1) - inverse(e1, f) - inverse(e, f1) + inverse(e, f);
-        result(e, f) = coupling * tangent[static_cast<std::size_t>(e)].dot(tangent[static_cast<std::size_t>(f)]);
+        result(e, f) =
+            coupling * tangent[static_cast<std::size_t>(e)].dot(tangent[static_cast<std::size_t>(f)]);
       }
     }
     if (kind == FlowConstraint::total_length) return Eigen::MatrixXd::Constant(1, 1, result.sum());
@@ -135,7 +137,8 @@ Loop RepulsiveFlow::corrected(const Loop& loop, const Eigen::MatrixXd& inverse,
   return added(loop, correction, -1);
 }
 
-/// A step towards the rest lengths alone, whatever it does to the energy, when they are far off and it has room.
+/// A step towards the rest lengths alone, whatever it does to the energy, when they are far off and it has
+/// room.
 bool RepulsiveFlow::restore_lengths(const Eigen::VectorXd& violation, const Eigen::MatrixXd& inverse) {
   if (constraint_ != FlowConstraint::edge_lengths) return false;
   double worst = 0;
@@ -165,7 +168,8 @@ bool RepulsiveFlow::step() {
   const double largest = std::sqrt(direction.rowwise().squaredNorm().maxCoeff());
   if (!(slope < 0) || !std::isfinite(largest) || !(largest > 0)) return false;
   double t = longest_move / largest;
-  double share = 1;  // of the violation that is mended: in step with t, or mending alone might raise the energy
+  double share =
+      1;  // of the violation that is mended: in step with t, or mending alone might raise the energy
   for (int k = 0; k < most_halvings; ++k, t /= 2, share /= 2) {
     Loop target = corrected(added(loop_, direction, t), inverse, (1 - share) * c.violation);
     const double fraction = safe_fraction(loop_, target);

@@ -1,14 +1,15 @@
 #include "filter_curveunfold/safe_motion.h"
 
-#include "filter_curveunfold/loop_tree.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "filter_curveunfold/loop_tree.h"
 
 namespace meshcomplete {
 namespace {
 
-/// The share of its distance that a pair of segments keeps. Any share above 0 is safe; a larger one ends steps early.
+/// The share of its distance that a pair of segments keeps. Any share above 0 is safe; a larger one ends
+/// steps early.
 constexpr double kept_share = 0.1;
 
 /// A step may also keep no more than this share of the angle between neighbouring segments.
@@ -45,7 +46,8 @@ double safe_fraction_of_pair(MovingPoint a, MovingPoint b, MovingPoint c, Moving
 }
 
 /// Safe fraction, at most `limit`, for the neighbouring segments ab and bc: the angle at b stays above 0.
-double safe_fraction_of_corner(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c, double limit) {
+double safe_fraction_of_corner(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c,
+                               double limit) {
   const double first_speed = (a.displacement - b.displacement).norm();
   const double second_speed = (c.displacement - b.displacement).norm();
   const auto state = [&](double t, double& first, double& second) {
@@ -59,7 +61,8 @@ double safe_fraction_of_corner(const MovingPoint& a, const MovingPoint& b, const
   const double kept = kept_angle_share * angle;
   double t = 0;
   for (int k = 0; k < most_advances; ++k) {
-    // A direction of length l whose end moves by s turns by at most asin(s / l) <= (pi / 2) s / l, while s < l.
+    // A direction of length l whose end moves by s turns by at most asin(s / l) <= (pi / 2) s / l, while s <
+    // l.
     const double rate = 1.5707963267948966 * (first_speed / first + second_speed / second);
     const double advance = rate > 0 ? std::min(angle - kept, 1.5) / rate : limit;
     if (t + advance >= limit) return limit;
@@ -91,7 +94,8 @@ double safe_fraction(const Loop& from, const Loop& to) {
     fraction = safe_fraction_of_corner(moving(i), moving(i + 1), moving(i + 2), fraction);
     if (fraction <= 0) return 0;
   }
-  // Every segment grown by the largest displacement: pairs whose boxes stay apart are no nearer than their motion.
+  // Every segment grown by the largest displacement: pairs whose boxes stay apart are no nearer than their
+  // motion.
   double largest = 0;
   for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, (to[i] - from[i]).squaredNorm());
   const double reach = std::sqrt(largest) / (1 - kept_share);

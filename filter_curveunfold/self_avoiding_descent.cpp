@@ -1,12 +1,12 @@
 #include "filter_curveunfold/self_avoiding_descent.h"
 
-#include "filter_curveunfold/planar_stretch.h"
-#include "filter_curveunfold/repulsive_flow.h"
-#include "filter_curveunfold/triangle_moves.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "filter_curveunfold/planar_stretch.h"
+#include "filter_curveunfold/repulsive_flow.h"
+#include "filter_curveunfold/triangle_moves.h"
 
 namespace meshcomplete {
 namespace {
@@ -27,8 +27,8 @@ constexpr int shape_steps = 120;
 constexpr int rounds = 8;
 constexpr int round_steps = 60;
 
-/// What a reduction without regard to the shape keeps strands apart by (the loop is about 1 across), so that the flow
-/// finds room to move, and the angle in radians that it keeps between neighbouring edges.
+/// What a reduction without regard to the shape keeps strands apart by (the loop is about 1 across), so that
+/// the flow finds room to move, and the angle in radians that it keeps between neighbouring edges.
 constexpr double reduced_clearance = 1e-4;
 constexpr double reduced_angle = 1e-3;
 
@@ -38,12 +38,6 @@ constexpr int opening_steps = 20;
 /// Directions of projection looked at after each step, and when a stage is over.
 constexpr int quick_directions = 12;
 constexpr int thorough_directions = 48;
-
-std::vector<double> edge_lengths(const Loop& loop) {
-  std::vector<double> lengths(loop.size());
-  for (std::size_t i = 0; i < loop.size(); ++i) lengths[i] = (loop[(i + 1) % loop.size()] - loop[i]).norm();
-  return lengths;
-}
 
 double perimeter(const Loop& loop) {
   const std::vector<double> lengths = edge_lengths(loop);
@@ -116,7 +110,8 @@ std::optional<Polygon> reduce_until_simple(Traveller& traveller, const Progress&
     before = traveller.reduced.kept.size();
     limits.least_points = std::max<std::size_t>(3, before * 2 / 3);
     reduce(traveller.position, limits, traveller.reduced, progress);
-    if (std::optional<Polygon> polygon = simple_projection(traveller.shape(), thorough_directions)) return polygon;
+    if (std::optional<Polygon> polygon = simple_projection(traveller.shape(), thorough_directions))
+      return polygon;
   } while (traveller.reduced.kept.size() < before);
   return std::nullopt;
 }
@@ -134,7 +129,8 @@ DescentResult descend(const Loop& loop, const Progress& progress) {
   DescentResult result;
   Traveller traveller{loop, unreduced(loop.size())};
   simplify(traveller, progress);
-  std::optional<Polygon> polygon = flow(traveller, FlowConstraint::edge_lengths, shape_steps, result, progress);
+  std::optional<Polygon> polygon =
+      flow(traveller, FlowConstraint::edge_lengths, shape_steps, result, progress);
   if (polygon) result.polygon = completed(traveller, *polygon);
   if (result.polygon) return result;
   // What follows does not look at the shape: the loop as it was given is the best to start from.

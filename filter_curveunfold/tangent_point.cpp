@@ -6,8 +6,8 @@
 namespace meshcomplete {
 namespace {
 
-// The kernel is |T x (p - q)|^3 / |p - q|^6. With these exponents its powers are square roots and products, and the
-// matching Sobolev order is s = (6 - 1) / 3 = 5/3, sigma = s - 1 = 2/3.
+// The kernel is |T x (p - q)|^3 / |p - q|^6. With these exponents its powers are square roots and products,
+// and the matching Sobolev order is s = (6 - 1) / 3 = 5/3, sigma = s - 1 = 2/3.
 
 /// r^(2 sigma + 1) for the squared distance.
 double metric_distance_power(double squared) { return squared * std::cbrt(std::sqrt(squared)); }
@@ -100,7 +100,8 @@ double TangentPointEnergy::gradient(const Loop& loop, Eigen::MatrixX3d& result) 
           const double inverse = 1 / (dd * dd * dd);
           const double term = cross * root * inverse;
           kernel += term;
-          const double by_cross = 1.5 * root * inverse * weight;  // derivative of the term by |e x d|^2, weighted
+          const double by_cross =
+              1.5 * root * inverse * weight;  // derivative of the term by |e x d|^2, weighted
           by_edge += 2 * by_cross * (e * dd - d * ed);
           const Vector3 by_d = 2 * by_cross * (d * ee - e * ed) - d * (6 * weight * term / dd);
           at_point[p] += by_d;
@@ -135,8 +136,8 @@ Eigen::MatrixXd TangentPointEnergy::inner_product(const Loop& loop) const {
     middle[i] = fine.point[i] + fine.edge[i] / 2;
     tangent[i] = fine.edge[i] / fine.length[i];
   }
-  // With one quadrature point per piece the product is u' P u over the pieces' derivatives plus u' Q u over their
-  // means, P and Q weighted graph Laplacians of all pairs.
+  // With one quadrature point per piece the product is u' P u over the pieces' derivatives plus u' Q u over
+  // their means, P and Q weighted graph Laplacians of all pairs.
   Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(n, n), mean = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = i + 2; j < n; ++j) {
@@ -145,8 +146,8 @@ Eigen::MatrixXd TangentPointEnergy::inner_product(const Loop& loop) const {
       const Vector3 d = middle[a] - middle[b];
       const double dd = d.squaredNorm();
       const double high = 2 * fine.length[a] * fine.length[b] / metric_distance_power(dd);
-      const double low = high * (tangent[a].cross(d).squaredNorm() + tangent[b].cross(d).squaredNorm()) /
-                         (2 * dd * dd);
+      const double low =
+          high * (tangent[a].cross(d).squaredNorm() + tangent[b].cross(d).squaredNorm()) / (2 * dd * dd);
       derivative(i, i) += high;
       derivative(j, j) += high;
       derivative(i, j) = derivative(j, i) = -high * tangent[a].dot(tangent[b]);
@@ -157,7 +158,8 @@ Eigen::MatrixXd TangentPointEnergy::inner_product(const Loop& loop) const {
   }
   // Every piece's derivative and mean are combinations of the two ends of the edge that the piece lies on.
   const auto points = static_cast<Eigen::Index>(points_);
-  Eigen::MatrixXd half_derivative = Eigen::MatrixXd::Zero(n, points), half_mean = Eigen::MatrixXd::Zero(n, points);
+  Eigen::MatrixXd half_derivative = Eigen::MatrixXd::Zero(n, points),
+                  half_mean = Eigen::MatrixXd::Zero(n, points);
   std::vector<double> start_share(pieces_.size()), slope(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const std::size_t next = (i + 1) % pieces_.size();
@@ -180,8 +182,8 @@ Eigen::MatrixXd TangentPointEnergy::inner_product(const Loop& loop) const {
     result.row(a) += start_share[k] * half_mean.row(i) - slope[k] * half_derivative.row(i);
     result.row(b) += (1 - start_share[k]) * half_mean.row(i) + slope[k] * half_derivative.row(i);
   }
-  // Translations cost nothing in the product above. A mass that is small against its diagonal makes it invertible
-  // without slowing any other motion down.
+  // Translations cost nothing in the product above. A mass that is small against its diagonal makes it
+  // invertible without slowing any other motion down.
   result.diagonal().array() += 1e-3 * result.diagonal().mean() / static_cast<double>(points);
   return (result + result.transpose()) / 2;
 }

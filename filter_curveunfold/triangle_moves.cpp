@@ -1,18 +1,18 @@
 #include "filter_curveunfold/triangle_moves.h"
 
-#include "filter_curveunfold/loop_tree.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <queue>
 #include <tuple>
 
+#include "filter_curveunfold/loop_tree.h"
+
 namespace meshcomplete {
 namespace {
 
-/// Distances below this share of the loop's size (about 1) are indistinguishable from contact after the rounding of
-/// the distance computations; a triangle that comes as near to another strand counts as met.
+/// Distances below this share of the loop's size (about 1) are indistinguishable from contact after the
+/// rounding of the distance computations; a triangle that comes as near to another strand counts as met.
 constexpr double contact = 1e-12;
 
 /// Likewise for directions, radians.
@@ -77,9 +77,9 @@ struct Ring {
     tree.set_segment(point, position[point], position[to]);
   }
 
-  /// Whether no part of the loop but the edges at `from` and `to` themselves comes nearer than `margin` to the triangle
-  /// from - apex - to, and those edges leave it by an angle with a sine above `least_sine`. `skip` is the point at the
-  /// apex when it is in the ring.
+  /// Whether no part of the loop but the edges at `from` and `to` themselves comes nearer than `margin` to
+  /// the triangle from - apex - to, and those edges leave it by an angle with a sine above `least_sine`.
+  /// `skip` is the point at the apex when it is in the ring.
   bool is_clean(std::size_t from, const Vector3& apex, std::size_t to, std::size_t skip, double margin,
                 double least_sine) const {
     const Vector3 &a = position[from], &b = position[to];
@@ -118,8 +118,8 @@ Height height_over_chord(const Vector3& a, const Vector3& p, const Vector3& b) {
 /// How often progress is looked at while points are taken out or put back.
 constexpr std::size_t progress_interval = 256;
 
-/// Bumps in the plane are no higher than this, in chord lengths: a point that stuck out far in space would only
-/// push its neighbours apart.
+/// Bumps in the plane are no higher than this, in chord lengths: a point that stuck out far in space would
+/// only push its neighbours apart.
 constexpr double highest_bump = 0.6;
 
 /// Feet of bumps stay away from the ends of the chord by this share of it, so that no edge becomes tiny.
@@ -131,6 +131,68 @@ constexpr int most_bump_halvings = 24;
 double turning(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 u = b - a, v = c - b;
   return std::atan2(u.x() * v.y() - u.y() * v.x(), u.x() * v.x() + u.y() * v.y());
+}
+
+/// The points that may be taken out next, those nearest to their chord first.
+class Candidates {
+ public:
+  struct Entry {
+    double height;
+    std::size_t point, before, after;  // with the neighbours at the time it was offered
+    bool operator>(const Entry& other) const {
+      return std::tie(height, point, before, after) >
+             std::tie(other.height, other.point, other.before, other.after);
+    }
+  };
+
+  Candidates(const Ring& ring, const ReductionLimits& limits) : ring_(ring), limits_(limits) {}
+
+  bool at_short_edge(std::size_t p) const {
+    return std::min(edge_before(p), edge_after(p)) < limits_.shortest_edge;
+  }
+
+  /// Takes a point into the queue when the limits let it out of a loop of `count` points.
+  void offer(std::size_t p, std::size_t count) {
+    const std::size_t before = ring_.before[p], after = ring_.after[p];
+    const Height h = height_over_chord(ring_.position[before], ring_.position[p], ring_.position[after]);
+    if (!(h.chord > contact)) return;
+    if (!at_short_edge(p)) {
+      if (h.height > limits_.largest_height || count <= limits_.least_points) return;
+      if (h.chord > limits_.longest_chord && h.chord > std::max(edge_before(p), edge_after(p))) return;
+    }
+    queue_.push({h.height, p, before, after});
+  }
+
+  bool empty() const { return queue_.empty(); }
+
+  Entry pop() {
+    const Entry entry = queue_.top();
+    queue_.pop();
+    return entry;
+  }
+
+ private:
+  double edge_before(std::size_t p) const {
+    return (ring_.position[p] - ring_.position[ring_.before[p]]).norm();
+  }
+  double edge_after(std::size_t p) const {
+    return (ring_.position[p] - ring_.position[ring_.after[p]]).norm();
+  }
+
+  const Ring& ring_;
+  const ReductionLimits& limits_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
+};
+
+/// Whether the limits allow to take the point out, and doing so is an isotopy.
+bool may_be_removed(const Ring& ring, const ReductionLimits& limits, const Candidates::Entry& entry,
+                    bool tiny) {
+  const double margin =
+      tiny ? contact : std::max({contact, limits.least_clearance, limits.clearance_share * entry.height});
+  const double least_sine =
+      tiny ? contact_angle : std::max(contact_angle, std::sin(std::min(limits.least_angle, 1.5)));
+  return ring.is_clean(entry.before, ring.position[entry.point], entry.after, entry.point, margin,
+                       least_sine);
 }
 
 }  // namespace
@@ -151,60 +213,42 @@ Loop kept_points(const Loop& loop, const ReducedLoop& reduced) {
 
 void reduce(const Loop& loop, const ReductionLimits& limits, ReducedLoop& reduced, const Progress& progress) {
   Ring ring(loop, reduced.kept);
+  Candidates candidates(ring, limits);
   std::size_t count = reduced.kept.size();
-  using Entry = std::tuple<double, std::size_t, std::size_t, std::size_t>;  // height, point, neighbours at the time
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  const auto at_short_edge = [&](std::size_t p) {
-    return std::min((loop[p] - loop[ring.before[p]]).norm(), (loop[p] - loop[ring.after[p]]).norm()) <
-           limits.shortest_edge;
-  };
-  const auto offer = [&](std::size_t p) {
-    const Height h = height_over_chord(loop[ring.before[p]], loop[p], loop[ring.after[p]]);
-    if (!(h.chord > contact)) return;
-    if (!at_short_edge(p)) {
-      const double longest_edge =
-          std::max((loop[p] - loop[ring.before[p]]).norm(), (loop[p] - loop[ring.after[p]]).norm());
-      if (h.height > limits.largest_height || count <= limits.least_points) return;
-      if (h.chord > limits.longest_chord && h.chord > longest_edge) return;
-    }
-    queue.emplace(h.height, p, ring.before[p], ring.after[p]);
-  };
-  for (const std::size_t p : reduced.kept) offer(p);
-  const double least_sine = std::max(contact_angle, std::sin(std::min(limits.least_angle, 1.5)));
-  // A point whose triangle was met gets another chance when a neighbour is gone, or in the next round: what was in
-  // its way may itself have been taken out.
+  for (const std::size_t p : reduced.kept) candidates.offer(p, count);
+  // A point whose triangle was met gets another chance in the next round: what was in its way may be gone by
+  // then.
   std::vector<std::size_t> refused;
   std::size_t removed_in_round = 0, looked_at = 0;
   const std::size_t fewest =
       limits.shortest_edge > 0 ? std::min<std::size_t>(6, limits.least_points) : limits.least_points;
   while (count > fewest) {
-    if (queue.empty()) {
+    if (candidates.empty()) {
       if (refused.empty() || removed_in_round == 0) break;
       removed_in_round = 0;
       for (const std::size_t p : refused) {
-        if (ring.present[p]) offer(p);
+        if (ring.present[p]) candidates.offer(p, count);
       }
       refused.clear();
-      if (queue.empty()) break;
+      if (candidates.empty()) break;
     }
-    const auto [height, p, from, to] = queue.top();
-    queue.pop();
-    if (!ring.present[p] || ring.before[p] != from || ring.after[p] != to) continue;
+    const Candidates::Entry entry = candidates.pop();
+    const std::size_t p = entry.point;
+    if (!ring.present[p] || ring.before[p] != entry.before || ring.after[p] != entry.after) continue;
     if (++looked_at % progress_interval == 0) progress.check();
-    const bool tiny = at_short_edge(p);
+    const bool tiny = candidates.at_short_edge(p);
     if (!tiny && count <= limits.least_points) continue;
-    const double margin = tiny ? contact : std::max({contact, limits.least_clearance, limits.clearance_share * height});
-    if (!ring.is_clean(from, loop[p], to, p, margin, tiny ? contact_angle : least_sine)) {
+    if (!may_be_removed(ring, limits, entry, tiny)) {
       refused.push_back(p);
       continue;
     }
-    const Height h = height_over_chord(loop[from], loop[p], loop[to]);
-    reduced.removals.push_back({p, from, to, h.along, h.height / h.chord});
+    const Height h = height_over_chord(loop[entry.before], loop[p], loop[entry.after]);
+    reduced.removals.push_back({p, entry.before, entry.after, h.along, h.height / h.chord});
     ring.remove(p);
     --count;
     ++removed_in_round;
-    offer(from);
-    offer(to);
+    candidates.offer(entry.before, count);
+    candidates.offer(entry.after, count);
   }
   std::vector<std::size_t> kept;
   for (const std::size_t p : reduced.kept) {
@@ -223,9 +267,8 @@ Polygon reinserted(const Polygon& polygon, const ReducedLoop& reduced) {
     const std::size_t a = removal->before, b = removal->after;
     const Vector3 chord = ring.position[b] - ring.position[a];
     const Vector3 right(chord.y(), -chord.x(), 0);
-    const double turn =
-        turning(ring.position[ring.before[a]], ring.position[a], ring.position[b]) +
-        turning(ring.position[a], ring.position[b], ring.position[ring.after[b]]);
+    const double turn = turning(ring.position[ring.before[a]], ring.position[a], ring.position[b]) +
+                        turning(ring.position[a], ring.position[b], ring.position[ring.after[b]]);
     const double side = turn >= 0 ? 1 : -1;
     const double along = std::clamp(removal->along, foot_margin, 1 - foot_margin);
     const Vector3 foot = ring.position[a] + along * chord;
@@ -244,7 +287,8 @@ Polygon reinserted(const Polygon& polygon, const ReducedLoop& reduced) {
     ring.insert(removal->point, a, b);
   }
   Polygon result(flat.size());
-  for (std::size_t i = 0; i < flat.size(); ++i) result[i] = Vector2(ring.position[i].x(), ring.position[i].y());
+  for (std::size_t i = 0; i < flat.size(); ++i)
+    result[i] = Vector2(ring.position[i].x(), ring.position[i].y());
   return result;
 }
 

@@ -1,5 +1,8 @@
 #include "filter_curveunfold/unfold.h"
 
+#include <chrono>
+#include <cmath>
+
 #include "common/core/error.h"
 #include "filter_curveunfold/annealing.h"
 #include "filter_curveunfold/knot.h"
@@ -7,9 +10,6 @@
 #include "filter_curveunfold/planar_stretch.h"
 #include "filter_curveunfold/self_avoiding_descent.h"
 #include "filter_curveunfold/triangle_moves.h"
-
-#include <chrono>
-#include <cmath>
 
 namespace meshcomplete {
 namespace {
@@ -49,7 +49,8 @@ void validate(const UnfoldOptions& options) {
   }
 }
 
-/// The loop centred and scaled to a bounding box with a diagonal of 1, so that every later tolerance is relative.
+/// The loop centred and scaled to a bounding box with a diagonal of 1, so that every later tolerance is
+/// relative.
 Loop normalised(const std::vector<Vector3>& loop) {
   Vector3 low = loop[0], high = loop[0];
   for (const Vector3& p : loop) {
@@ -67,11 +68,13 @@ Loop normalised(const std::vector<Vector3>& loop) {
 
 /// Whether an invariant proves the loop knotted; fills in what was found out about it.
 bool is_certified_knot(const Loop& loop, Unfolding& result, const Progress& progress) {
-  // Fary and Milnor: a knot turns by more than 4 pi. The margin is far above the rounding of the sum of angles.
+  // Fary and Milnor: a knot turns by more than 4 pi. The margin is far above the rounding of the sum of
+  // angles.
   if (result.total_curvature < 4 * 3.14159265358979 * (1 - 1e-9)) return false;
   ReducedLoop reduced = unreduced(loop.size());
   reduce(loop, ReductionLimits(), reduced, progress);
-  result.knot_determinant = reduced.kept.size() < 6 ? 1 : knot_determinant(kept_points(loop, reduced), progress);
+  result.knot_determinant =
+      reduced.kept.size() < 6 ? 1 : knot_determinant(kept_points(loop, reduced), progress);
   return result.knot_determinant && *result.knot_determinant != 1;
 }
 

@@ -37,41 +37,6 @@ install_packages() {
 $(tail -n 15 "$cache/apt-install.log")"
 }
 
-# The machine's binary package sources as deb-src lines, one per suite, component main only. Reads both formats that
-# apt reads: one-line .list files and deb822 .sources files.
-source_lines() {
-  local list
-  for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
-    [ -f "$list" ] || continue
-    sed -nE 's/^[[:space:]]*deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]+)[[:space:]]+([^[:space:]]+)[[:space:]].*\bmain\b.*/deb-src \1\2 \3 main/p' "$list"
-  done
-  for list in /etc/apt/sources.list.d/*.sources; do
-    [ -f "$list" ] || continue
-    deb822_source_lines "$list"
-  done
-}
-
-deb822_source_lines() {
-  awk '
-    function flush_stanza(   u, s, i, j, option) {
-      if (types ~ /(^| )deb( |$)/ && components ~ /(^| )main( |$)/ && tolower(enabled) !~ /^(no|false)/) {
-        option = signed == "" ? "" : "[signed-by=" signed "] "
-        split(uris, u, " "); split(suites, s, " ")
-        for (i in u) for (j in s) print "deb-src " option u[i] " " s[j] " main"
-      }
-      types = uris = suites = components = enabled = signed = ""
-    }
-    /^#/ { next }
-    /^[[:space:]]*$/ { flush_stanza(); next }
-    { line = $0; sub(/^[^:]*:[[:space:]]*/, "", line) }
-    /^Types:/ { types = line } /^URIs:/ { uris = line } /^Suites:/ { suites = line }
-    /^Components:/ { components = line } /^Enabled:/ { enabled = line }
-    # A key may also stand in the file itself; then apt finds it only there, and the usual keyring has to do.
-    /^Signed-By:/ { signed = line ~ /^\// ? line : "" }
-    END { flush_stanza() }
-  ' "$1"
-}
-
 # apt with lists, cache and sources of its own.
 private_apt() {
   local command=$1
@@ -91,7 +56,7 @@ fetch_meshlab_headers() {
   private=$cache/apt
   rm -rf "$private"
   mkdir -p "$private/lists/partial" "$private/cache" "$private/archives/partial" "$private/download"
-  source_lines | sort -u >"$private/sources.list"
+  "$top/scripts/source_lines.sh" /etc/apt/sources.list /etc/apt/sources.list.d/* >"$private/sources.list"
   [ -s "$private/sources.list" ] || fail "No Debian package source with the component main is configured in /etc/apt."
   private_apt apt-get update -qq
   (cd "$private/download" && private_apt apt-get source -qq --download-only --tar-only "meshlab=$version") ||

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <string>
 
 namespace meshcomplete {
@@ -36,10 +35,11 @@ class Remesher {
     double ratio;
     Index from, to, half_edge;
     bool operator<(const LongEdge& other) const {
-      return ratio != other.ratio ? ratio < other.ratio : half_edge > other.half_edge;
+      return ratio != other.ratio ? ratio > other.ratio : half_edge < other.half_edge;
     }
   };
 
+  std::vector<LongEdge> long_edges() const;
   double relative_length(Index h) const {
     return patch_.length(h) / (0.5 * (target_[patch_.origin(h)] + target_[patch_.target(h)]));
   }
@@ -58,6 +58,7 @@ class Remesher {
   std::vector<double>& target_;
   const RemeshOptions& options_;
   std::vector<Index> stack_;  // half-edges that may have to be flipped
+  bool splitting_ = false;
 };
 
 // Sum of the cotangents of a triangle's angles, times four: squared sides over area, infinite for a flat triangle.
@@ -79,9 +80,8 @@ bool Remesher::wants_flip(Index h) const {
   const double before = harmonic_index(pa, pb, pc) + harmonic_index(pb, pa, pd);
   const double after = harmonic_index(pc, pd, pb) + harmonic_index(pd, pc, pa);
   if (!(after < margin * before)) return false;
-  // Never a long edge for a shorter one: splitting long edges would undo the flip, and never end.
-  const double new_length = (pc - pd).norm();
-  if (new_length > 0.5 * options_.longest * (target_[c] + target_[d]) && new_length > (pa - pb).norm()) return false;
+  // While long edges are split no flip may make one: the split would undo the flip, and never end.
+  if (splitting_ && (pc - pd).norm() > 0.5 * options_.longest * (target_[c] + target_[d])) return false;
   if (forbidden(c, d) || c == d || patch_.joined(c, d)) return false;
   const Vector3 before1 = (pb - pa).cross(pc - pa), before2 = (pa - pb).cross(pd - pb);
   const Vector3 after1 = (pd - pc).cross(pb - pc), after2 = (pc - pd).cross(pa - pd);
@@ -124,34 +124,40 @@ Index Remesher::split(Index h) {
   return m;
 }
 
-void Remesher::split_long_edges(const Progress& progress) {
-  std::priority_queue<LongEdge> queue;
-  const auto consider = [&](Index h) {
-    if (patch_.is_boundary(h)) return;
+// The inner edges that are too long now, longest first.
+std::vector<Remesher::LongEdge> Remesher::long_edges() const {
+  std::vector<LongEdge> edges;
+  for (Index h = 0; h < 3 * patch_.triangle_count(); ++h) {
+    if (!patch_.alive(h / 3) || patch_.is_boundary(h) || patch_.opposite(h) < h) continue;
     const double ratio = relative_length(h);
-    if (ratio > options_.longest) queue.push({ratio, patch_.origin(h), patch_.target(h), h});
-  };
-  for (Index h = 0; h < 3 * patch_.triangle_count(); ++h)
-    if (patch_.alive(h / 3) && (patch_.is_boundary(h) || h < patch_.opposite(h))) consider(h);
-  std::size_t count = 0;
-  while (!queue.empty()) {
-    const LongEdge edge = queue.top();
-    queue.pop();
-    const Index h = edge.half_edge;
-    // Stale when flips or splits have changed what the half-edge joins.
-    if (!patch_.alive(h / 3) || patch_.origin(h) != edge.from || patch_.target(h) != edge.to) continue;
-    if (patch_.vertex_count() >= options_.max_vertices)
-      throw CompletionError("refining the patch", "The patch would need more than " +
-                                                      std::to_string(options_.max_vertices) +
-                                                      " vertices at this edge length; ask for longer edges.");
-    const Index m = split(h);
-    flip_around(m);
-    patch_.for_outgoing(m, [&](Index out) {
-      consider(out);
-      consider(PatchMesh::next(out));
-    });
-    if (++count % 256 == 0) progress.check();
+    if (ratio > options_.longest) edges.push_back({ratio, patch_.origin(h), patch_.target(h), h});
   }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// In passes, each over the edges that are too long at its start: splitting needles makes new long edges for ever, and
+// the passes are as many as halving the longest edge takes, and as many again for the edges that splits add.
+void Remesher::split_long_edges(const Progress& progress) {
+  std::vector<LongEdge> edges = long_edges();
+  if (edges.empty()) return;
+  const int passes = 2 * static_cast<int>(std::ceil(std::log2(edges.front().ratio / options_.longest))) + 2;
+  splitting_ = true;
+  for (int pass = 0; pass < passes && !edges.empty(); ++pass) {
+    for (const LongEdge& edge : edges) {
+      const Index h = edge.half_edge;
+      // Stale when flips or splits have changed what the half-edge joins.
+      if (patch_.origin(h) != edge.from || patch_.target(h) != edge.to) continue;
+      if (patch_.vertex_count() >= options_.max_vertices)
+        throw CompletionError("refining the patch", "The patch would need more than " +
+                                                        std::to_string(options_.max_vertices) +
+                                                        " vertices at this edge length; ask for longer edges.");
+      flip_around(split(h));
+    }
+    progress.check();
+    edges = long_edges();
+  }
+  splitting_ = false;
 }
 
 bool Remesher::collapse_is_good(Index h) const {

@@ -1,13 +1,13 @@
 #include "common/core/progress.h"
 
-#include "common/core/error.h"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <thread>
 #include <utility>
+
+#include "common/core/error.h"
 
 namespace meshcomplete {
 namespace {

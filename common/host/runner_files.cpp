@@ -1,20 +1,19 @@
 // Reading and writing meshes through MeshLab's format plugins.
-#include "common/core/error.h"
-#include "common/host/runner_host.h"
-#include "common/host/runner_obj.h"
-#include "common/host/runner_state.h"
-
 #include <common/filter_parameter/rich_parameter_list.h>
-
 #include <vcg/complex/algorithms/clean.h>
 #include <vcg/complex/algorithms/update/bounding.h>
 #include <vcg/complex/algorithms/update/normal.h>
 #include <wrap/io_trimesh/io_mask.h>
 
 #include <QDir>
+#include <QFile>
 #include <QFileInfo>
-
 #include <cmath>
+
+#include "common/core/error.h"
+#include "common/host/runner_host.h"
+#include "common/host/runner_state.h"
+#include "common/host/runner_text.h"
 
 namespace meshcomplete {
 namespace host {
@@ -61,7 +60,8 @@ class WorkingFolder {
   QString before_;
 };
 
-/// MeshLab's readers do not check every index; a face that points outside the vertices would crash any filter.
+/// MeshLab's readers do not check every index; a face that points outside the vertices would crash any
+/// filter.
 bool faces_are_inside(const CMeshO& mesh) {
   if (mesh.face.empty()) return true;
   if (mesh.vert.empty()) return false;
@@ -76,11 +76,13 @@ bool faces_are_inside(const CMeshO& mesh) {
 std::size_t count_not_finite(const CMeshO& mesh) {
   std::size_t count = 0;
   for (const CVertexO& vertex : mesh.vert)
-    count += !std::isfinite(vertex.cP()[0]) || !std::isfinite(vertex.cP()[1]) || !std::isfinite(vertex.cP()[2]);
+    count +=
+        !std::isfinite(vertex.cP()[0]) || !std::isfinite(vertex.cP()[1]) || !std::isfinite(vertex.cP()[2]);
   return count;
 }
 
-/// Normals and box, as MeshLab's window computes them; normals that the file has are kept, and no face is removed.
+/// Normals and box, as MeshLab's window computes them; normals that the file has are kept, and no face is
+/// removed.
 void update_derived(MeshModel& mesh, int mask) {
   vcg::tri::UpdateBounding<CMeshO>::Box(mesh.cm);
   if (mesh.cm.fn > 0) {
@@ -96,8 +98,10 @@ QString merge_soup(MeshModel& mesh, std::size_t not_finite) {
   const int merged = vcg::tri::Clean<CMeshO>::RemoveDuplicateVertex(mesh.cm, false);
   vcg::tri::Allocator<CMeshO>::CompactEveryVector(mesh.cm);
   if (merged == 0) return QString();
-  return QString("STL stores every triangle on its own: %1 vertices at the same positions were merged, "
-                 "as MeshLab does.").arg(merged);
+  return QString(
+             "STL stores every triangle on its own: %1 vertices at the same positions were merged, "
+             "as MeshLab does.")
+      .arg(merged);
 }
 
 /// Removes the first vertices, which no face uses; all others keep their order.
@@ -108,8 +112,9 @@ void remove_front_vertices(CMeshO& mesh, int count) {
 }
 
 /// `path` is what the plugin opens; `file` is what the user knows.
-void call_reader(MeshIOInterface& plugin, const QString& extension, const QFileInfo& file, const QString& path,
-                 MeshModel& mesh, int& mask, const RichParameterList& global, const Progress::Receiver& receiver) {
+void call_reader(MeshIOInterface& plugin, const QString& extension, const QFileInfo& file,
+                 const QString& path, MeshModel& mesh, int& mask, const RichParameterList& global,
+                 const Progress::Receiver& receiver) {
   RichParameterList parameters;
   plugin.initPreOpenParameter(extension, file.fileName(), parameters);
   for (const RichParameter& parameter : global)
@@ -130,7 +135,8 @@ void call_reader(MeshIOInterface& plugin, const QString& extension, const QFileI
 }
 
 /// What a layer has: what its file had, and what filters have added since.
-int attributes_of(const MeshModel& mesh, const std::map<int, int>& file_masks, const std::map<int, int>& loaded_masks) {
+int attributes_of(const MeshModel& mesh, const std::map<int, int>& file_masks,
+                  const std::map<int, int>& loaded_masks) {
   const auto file_mask = file_masks.find(mesh.id());
   const auto loaded_mask = loaded_masks.find(mesh.id());
   int mask = file_mask == file_masks.end() ? 0 : file_mask->second;
@@ -173,22 +179,22 @@ QStringList RunnerHost::writable_formats() {
 QStringList RunnerHost::load(const QString& path, const Progress::Receiver& receiver) {
   const QFileInfo file(path);
   const std::string stage = "reading " + file.fileName().toStdString();
-  MeshIOInterface* plugin = state_->reader(file.suffix().toLower());
+  const QString extension = file.suffix().toLower();
+  MeshIOInterface* plugin = state_->reader(extension);
   if (plugin == nullptr) throw CompletionError(stage, "MeshLab has no reader for this kind of file");
   MeshModel* mesh = state_->document.addNewMesh(file.absoluteFilePath(), "");
   int mask = 0;
   QStringList notes;
   try {
-    if (file.suffix().toLower() == "obj") {
-      const TextFile text(obj_for_meshlab(QFile::encodeName(path).toStdString()));
-      call_reader(*plugin, "OBJ", file, QString::fromStdString(text.path()), *mesh, mask, state_->global_parameters,
-                  receiver);
-      remove_front_vertices(mesh->cm, obj_stand_ins);
-    } else {
-      call_reader(*plugin, file.suffix().toUpper(), file, file.fileName(), *mesh, mask, state_->global_parameters,
-                  receiver);
-    }
-    if (!faces_are_inside(mesh->cm)) throw CompletionError(stage, "a face refers to a vertex that is not there");
+    const std::string name = QFile::encodeName(path).toStdString();
+    std::unique_ptr<TextFile> plain;
+    if (extension == "obj") plain = std::make_unique<TextFile>(obj_for_meshlab(name));
+    if (extension == "off") plain = std::make_unique<TextFile>(off_for_meshlab(name));
+    const QString opened = plain ? QString::fromStdString(plain->path()) : file.fileName();
+    call_reader(*plugin, extension.toUpper(), file, opened, *mesh, mask, state_->global_parameters, receiver);
+    if (extension == "obj") remove_front_vertices(mesh->cm, obj_stand_ins);
+    if (!faces_are_inside(mesh->cm))
+      throw CompletionError(stage, "a face refers to a vertex that is not there");
   } catch (const CompletionError&) {
     state_->document.delMesh(mesh);
     throw;
@@ -198,8 +204,10 @@ QStringList RunnerHost::load(const QString& path, const Progress::Receiver& rece
   }
   const std::size_t not_finite = count_not_finite(mesh->cm);
   if (not_finite > 0)
-    notes << QString("%1 of %2 vertices have coordinates that are no finite numbers.").arg(not_finite).arg(mesh->cm.vn);
-  if (file.suffix().toLower() == "stl") notes << merge_soup(*mesh, not_finite);
+    notes << QString("%1 of %2 vertices have coordinates that are no finite numbers.")
+                 .arg(not_finite)
+                 .arg(mesh->cm.vn);
+  if (extension == "stl") notes << merge_soup(*mesh, not_finite);
   if (!plugin->errorMsg().isEmpty()) notes << plugin->errorMsg().section("Error details:", -1).trimmed();
   update_derived(*mesh, mask);
   state_->file_masks[mesh->id()] = mask;
@@ -239,7 +247,8 @@ QStringList RunnerHost::save(int layer, const QString& path, const SaveOptions& 
   const CallbackScope callback(receiver);
   plugin->clearErrorString();
   const DialogCloser dialogs;
-  if (!plugin->save(format, file.absoluteFilePath(), mesh, wanted & able, parameters, &CallbackScope::callback)) {
+  if (!plugin->save(format, file.absoluteFilePath(), mesh, wanted & able, parameters,
+                    &CallbackScope::callback)) {
     QString why = plugin->errorMsg().section('\n', 1).trimmed();
     if (why.isEmpty()) why = dialogs.message();
     if (why.isEmpty()) why = "MeshLab's writer gave no reason";

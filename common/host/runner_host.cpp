@@ -1,7 +1,5 @@
 #include "common/host/runner_host.h"
 
-#include "common/host/runner_state.h"
-
 #include <dlfcn.h>
 
 #include <QApplication>
@@ -12,8 +10,9 @@
 #include <QMessageBox>
 #include <QPluginLoader>
 #include <QTimer>
-
 #include <algorithm>
+
+#include "common/host/runner_state.h"
 
 namespace meshcomplete {
 namespace host {
@@ -24,9 +23,12 @@ const Progress::Receiver* current_receiver = nullptr;
 
 /// Plugins whose filters draw with OpenGL, which a program without a display does not have.
 bool draws(const QString& file) {
-  static const QStringList drawing = {"libfilter_ao.so",           "libfilter_color_projection.so",
-                                      "libfilter_mutualglobal.so", "libfilter_mutualinfo.so",
-                                      "libfilter_sample_gpu.so",   "libfilter_sdfgpu.so",
+  static const QStringList drawing = {"libfilter_ao.so",
+                                      "libfilter_color_projection.so",
+                                      "libfilter_mutualglobal.so",
+                                      "libfilter_mutualinfo.so",
+                                      "libfilter_sample_gpu.so",
+                                      "libfilter_sdfgpu.so",
                                       "libfilter_img_patch_param.so"};
   return drawing.contains(file);
 }
@@ -54,7 +56,8 @@ bool DialogCloser::eventFilter(QObject* object, QEvent* event) {
   QDialog* dialog = event->type() == QEvent::Show ? qobject_cast<QDialog*>(object) : nullptr;
   if (dialog != nullptr) {
     const QMessageBox* box = qobject_cast<QMessageBox*>(dialog);
-    message_ += (box != nullptr ? box->text() : dialog->windowTitle()).section("Error details:", -1).simplified();
+    message_ +=
+        (box != nullptr ? box->text() : dialog->windowTitle()).section("Error details:", -1).simplified();
     QTimer::singleShot(0, dialog, &QDialog::reject);
   }
   return false;
@@ -96,10 +99,12 @@ QString RunnerHost::State::load_plugin(const QString& path) {
     if (filter == nullptr) manager.ownerPlug.push_back(format);
     add_formats(*format);
   }
-  return filter == nullptr && format == nullptr ? file + " holds no filter and no file format of MeshLab." : QString();
+  return filter == nullptr && format == nullptr ? file + " holds no filter and no file format of MeshLab."
+                                                : QString();
 }
 
-void RunnerHost::State::add_filters(MeshFilterInterface& plugin, DeclaredFilters* declared, const QString& file) {
+void RunnerHost::State::add_filters(MeshFilterInterface& plugin, DeclaredFilters* declared,
+                                    const QString& file) {
   for (QAction* action : plugin.actions()) {
     HostFilter filter;
     filter.name = plain_name(action->text());
@@ -186,14 +191,16 @@ std::vector<LayerInfo> RunnerHost::layers() const {
 int RunnerHost::current_layer() const { return state_->document.meshList.indexOf(state_->document.mm()); }
 
 void RunnerHost::set_current_layer(int layer) {
-  if (layer >= 0 && layer < state_->document.size()) state_->document.setCurrentMesh(state_->document.meshList[layer]->id());
+  if (layer >= 0 && layer < state_->document.size())
+    state_->document.setCurrentMesh(state_->document.meshList[layer]->id());
 }
 
 std::array<double, 16> RunnerHost::transformation(int layer) const {
   std::array<double, 16> matrix{};
   const auto& stored = state_->document.meshList.at(layer)->cm.Tr;
   for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) matrix[std::size_t(4 * row + column)] = stored.ElementAt(row, column);
+    for (int column = 0; column < 4; ++column)
+      matrix[std::size_t(4 * row + column)] = stored.ElementAt(row, column);
   return matrix;
 }
 
@@ -204,7 +211,9 @@ void RunnerHost::set_transformation(int layer, const std::array<double, 16>& mat
       stored.ElementAt(row, column) = static_cast<float>(matrix[std::size_t(4 * row + column)]);
 }
 
-void RunnerHost::set_label(int layer, const QString& label) { state_->document.meshList.at(layer)->setLabel(label); }
+void RunnerHost::set_label(int layer, const QString& label) {
+  state_->document.meshList.at(layer)->setLabel(label);
+}
 
 }  // namespace host
 }  // namespace meshcomplete

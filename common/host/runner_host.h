@@ -1,15 +1,10 @@
-// What a program that runs filters without MeshLab's window needs from MeshLab: plugins, parameters, files, layers.
-// No MeshLab type appears here, so that the runner is the same for every MeshLab release.
+// What a program that runs filters without MeshLab's window needs from MeshLab: plugins, parameters, files,
+// layers. No MeshLab type appears here, so that the runner is the same for every MeshLab release.
 #pragma once
-
-#include "common/core/patch.h"
-#include "common/core/progress.h"
-#include "common/host/filter_declaration.h"
 
 #include <QString>
 #include <QStringList>
 #include <QVariant>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +14,10 @@
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include "common/core/patch.h"
+#include "common/core/progress.h"
+#include "common/host/filter_declaration.h"
 
 namespace meshcomplete {
 namespace host {
@@ -85,13 +84,14 @@ struct LayerGeometry {
 
 /// How a layer is saved.
 struct SaveOptions {
-  /// meshlabserver's two-letter codes ("vc", "fq", ...); absent: what the layer's file had and filters have added.
+  /// meshlabserver's two-letter codes ("vc", "fq", ...); absent: what the layer's file had and filters have
+  /// added.
   std::optional<QStringList> attributes;
   bool binary = true;
 };
 
-/// MeshLab without its window: one document, the plugins, and what can be done with them. Needs a QApplication.
-/// Reading and writing throw CompletionError with a message for the user.
+/// MeshLab without its window: one document, the plugins, and what can be done with them. Needs a
+/// QApplication. Reading and writing throw CompletionError with a message for the user.
 class RunnerHost {
  public:
   RunnerHost();
@@ -125,7 +125,8 @@ class RunnerHost {
   /// Adds the mesh of a file as a layer and makes it current, changing nothing of it but what the notes say.
   QStringList load(const QString& path, const Progress::Receiver& receiver);
   /// Writes a layer; the extension chooses the format. Returns what the format could not hold.
-  QStringList save(int layer, const QString& path, const SaveOptions& options, const Progress::Receiver& receiver);
+  QStringList save(int layer, const QString& path, const SaveOptions& options,
+                   const Progress::Receiver& receiver);
 
   std::vector<LayerInfo> layers() const;
   int current_layer() const;  ///< -1 when there is none

@@ -1,14 +1,13 @@
 // The parameters of a loaded filter, and running it.
-#include "common/host/runner_host.h"
-#include "common/host/runner_state.h"
-
 #include <common/filter_parameter/rich_parameter_list.h>
-
 #include <vcg/complex/algorithms/clean.h>
 #include <vcg/complex/algorithms/create/platonic.h>
 #include <vcg/complex/algorithms/update/selection.h>
 
 #include <QMetaObject>
+
+#include "common/host/runner_host.h"
+#include "common/host/runner_state.h"
 
 namespace meshcomplete {
 namespace host {
@@ -98,22 +97,39 @@ void set_numbers(RichParameter& parameter, const QVariantList& numbers) {
 
 void set_value(RichParameter& parameter, ValueKind kind, const QVariant& value, MeshDocument& document) {
   switch (kind) {
-    case ValueKind::boolean: parameter.setValue(BoolValue(value.toBool())); break;
-    case ValueKind::integer: parameter.setValue(IntValue(value.toInt())); break;
-    case ValueKind::choice: parameter.setValue(EnumValue(value.toInt())); break;
-    case ValueKind::text: parameter.setValue(StringValue(value.toString())); break;
-    case ValueKind::length: parameter.setValue(AbsPercValue(value.toFloat())); break;
-    case ValueKind::layer: parameter.setValue(MeshValue(document.meshList.value(value.toInt()))); break;
-    case ValueKind::numbers: set_numbers(parameter, value.toList()); break;
+    case ValueKind::boolean:
+      parameter.setValue(BoolValue(value.toBool()));
+      break;
+    case ValueKind::integer:
+      parameter.setValue(IntValue(value.toInt()));
+      break;
+    case ValueKind::choice:
+      parameter.setValue(EnumValue(value.toInt()));
+      break;
+    case ValueKind::text:
+      parameter.setValue(StringValue(value.toString()));
+      break;
+    case ValueKind::length:
+      parameter.setValue(AbsPercValue(value.toFloat()));
+      break;
+    case ValueKind::layer:
+      parameter.setValue(MeshValue(document.meshList.value(value.toInt())));
+      break;
+    case ValueKind::numbers:
+      set_numbers(parameter, value.toList());
+      break;
     case ValueKind::open_file:
-    case ValueKind::save_file: parameter.setValue(FileValue(value.toString())); break;
+    case ValueKind::save_file:
+      parameter.setValue(FileValue(value.toString()));
+      break;
     case ValueKind::real:
       if (parameter.value().isDynamicFloat())
         parameter.setValue(DynamicFloatValue(value.toFloat()));
       else
         parameter.setValue(FloatValue(value.toFloat()));
       break;
-    case ValueKind::unsupported: break;
+    case ValueKind::unsupported:
+      break;
   }
 }
 
@@ -128,7 +144,8 @@ void prepare_layers(MeshDocument& document, int requirements) {
 
 bool has_repeated_corners(const CMeshO& mesh) {
   for (const CFaceO& face : mesh.face)
-    if (!face.IsD() && (face.cV(0) == face.cV(1) || face.cV(1) == face.cV(2) || face.cV(2) == face.cV(0))) return true;
+    if (!face.IsD() && (face.cV(0) == face.cV(1) || face.cV(1) == face.cV(2) || face.cV(2) == face.cV(0)))
+      return true;
   return false;
 }
 
@@ -159,7 +176,8 @@ QString RunnerHost::obstacle(const HostFilter& filter) {
     return "It draws with OpenGL, which is not there without a display. Run it in MeshLab's window.";
   const bool needs_mesh = action.plugin->filterArity(action.action) == MeshFilterInterface::SINGLE_MESH;
   MeshModel* mesh = state_->document.mm();
-  if (mesh == nullptr) return needs_mesh ? QString("It needs a mesh, and none is loaded (-i FILE).") : QString();
+  if (mesh == nullptr)
+    return needs_mesh ? QString("It needs a mesh, and none is loaded (-i FILE).") : QString();
   if (filter.declaration != nullptr) return QString();
   QStringList missing;
   if (needs_mesh && !action.plugin->isFilterApplicable(action.action, *mesh, missing))
@@ -173,7 +191,8 @@ QString RunnerHost::obstacle(const HostFilter& filter) {
 }
 
 RunOutcome RunnerHost::run(const HostFilter& filter, const std::map<QString, QVariant>& values,
-                           const Progress::Receiver& receiver, const std::function<void(const QString&)>& log) {
+                           const Progress::Receiver& receiver,
+                           const std::function<void(const QString&)>& log) {
   const State::Action& action = state_->actions.at(filter.name);
   MeshDocument& document = state_->document;
   RunOutcome outcome;
@@ -194,7 +213,8 @@ RunOutcome RunnerHost::run(const HostFilter& filter, const std::map<QString, QVa
     action.plugin->initParameterSet(action.action, document, list);
     for (RichParameter& parameter : list) {
       const auto given = values.find(parameter.name());
-      if (given != values.end()) set_value(parameter, describe(parameter, document).kind, given->second, document);
+      if (given != values.end())
+        set_value(parameter, describe(parameter, document).kind, given->second, document);
     }
     outcome.done = action.plugin->applyFilter(action.action, document, list, &CallbackScope::callback);
     if (!outcome.done) outcome.message = action.plugin->errorMsg();

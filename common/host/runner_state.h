@@ -1,13 +1,13 @@
 // What the parts of RunnerHost share. Internal to common/host.
 #pragma once
 
-#include "common/host/meshlab_version.h"
-#include "common/host/runner_host.h"
-
 #include <common/pluginmanager.h>
 
 #include <QObject>
 #include <QSet>
+
+#include "common/host/meshlab_version.h"
+#include "common/host/runner_host.h"
 
 namespace meshcomplete {
 namespace host {
@@ -23,7 +23,7 @@ struct RunnerHost::State {
   RichParameterList global_parameters;
   std::map<QString, HostFilter> filters;
   std::map<QString, Action> actions;
-  QSet<QString> loaded_files;       ///< file names without folder: the same plugin in two folders is loaded once
+  QSet<QString> loaded_files;  ///< file names without folder: the same plugin in two folders is loaded once
   bool meshlab_filters_loaded = false;
   bool meshlab_formats_loaded = false;
   std::map<int, int> file_masks;    ///< mesh id -> attributes that its file had, as bits of vcg's io mask
@@ -41,7 +41,8 @@ struct RunnerHost::State {
   void add_formats(MeshIOInterface& plugin);
 };
 
-/// Forwards MeshLab's callback to a receiver while it lives. MeshLab's callbacks are plain functions, so one at a time.
+/// Forwards MeshLab's callback to a receiver while it lives. MeshLab's callbacks are plain functions, so one
+/// at a time.
 class CallbackScope {
  public:
   explicit CallbackScope(const Progress::Receiver& receiver);

@@ -1,9 +1,9 @@
 #include "filter_curveunfold/annealing.h"
 
+#include <gtest/gtest.h>
+
 #include "filter_curveunfold/loop_tree.h"
 #include "tests/support/loop_families.h"
-
-#include <gtest/gtest.h>
 
 namespace meshcomplete {
 namespace {
@@ -33,7 +33,8 @@ std::vector<Loop> rims_to_unfold(int points, int count) {
 TEST(PlanarityEnergy, of_planar_loops_is_half_a_turn_per_change_of_side) {
   EXPECT_NEAR(planarity_energy(testing::saddle(30, 1, 0)), 0, 1e-9);
   // One dent: the sense of turning changes twice.
-  const Loop dented = {Vector3(0, 0, 0), Vector3(4, 0, 0), Vector3(4, 4, 0), Vector3(2, 1, 0), Vector3(0, 4, 0)};
+  const Loop dented = {Vector3(0, 0, 0), Vector3(4, 0, 0), Vector3(4, 4, 0), Vector3(2, 1, 0),
+                       Vector3(0, 4, 0)};
   EXPECT_NEAR(planarity_energy(dented), 2 * pi, 1e-9);
 }
 

@@ -1,13 +1,12 @@
 #include "filter_curveunfold/knot.h"
 
-#include "filter_curveunfold/triangle_moves.h"
-#include "tests/support/loop_families.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <limits>
+
+#include "filter_curveunfold/triangle_moves.h"
+#include "tests/support/loop_families.h"
 
 namespace meshcomplete {
 namespace {
@@ -38,7 +37,8 @@ TEST(KnotDeterminant, saturates_where_int_ends) {
 TEST(KnotDeterminant, of_unknots_is_one) {
   EXPECT_EQ(knot_determinant(testing::wound_rim(60, 5)), 1);
   EXPECT_EQ(knot_determinant(testing::wound_round_cylinder(81, 3)), 1);
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) EXPECT_EQ(knot_determinant(testing::random_tangle(40, seed)), 1);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    EXPECT_EQ(knot_determinant(testing::random_tangle(40, seed)), 1);
 }
 
 TEST(KnotDeterminant, does_not_depend_on_position_direction_and_mirroring) {
@@ -58,9 +58,9 @@ TEST(KnotDeterminant, is_not_claimed_for_loops_that_touch_themselves) {
 }
 
 TEST(TriangleMoves, keep_the_knot_type) {
-  for (const auto& [loop, determinant] : {std::pair(testing::torus_knot(200, 2, 3), 3),
-                                          std::pair(testing::figure_eight_knot(200), 5),
-                                          std::pair(testing::torus_knot(300, 3, 4), 3)}) {
+  for (const auto& [loop, determinant] :
+       {std::pair(testing::torus_knot(200, 2, 3), 3), std::pair(testing::figure_eight_knot(200), 5),
+        std::pair(testing::torus_knot(300, 3, 4), 3)}) {
     ReducedLoop reduced = unreduced(loop.size());
     reduce(loop, ReductionLimits(), reduced);
     EXPECT_LT(reduced.kept.size(), 40u);
@@ -71,7 +71,8 @@ TEST(TriangleMoves, keep_the_knot_type) {
 }
 
 TEST(TriangleMoves, reduce_easy_unknots_to_a_triangle) {
-  for (const testing::Loop& loop : {testing::wound_rim(100, 3), testing::saddle(100, 5, 1), testing::closed_helix(200, 5)}) {
+  for (const testing::Loop& loop :
+       {testing::wound_rim(100, 3), testing::saddle(100, 5, 1), testing::closed_helix(200, 5)}) {
     ReducedLoop reduced = unreduced(loop.size());
     reduce(loop, ReductionLimits(), reduced);
     EXPECT_EQ(reduced.kept.size(), 3u);
@@ -92,7 +93,8 @@ TEST(TriangleMoves, respect_their_limits) {
   reduce(loop, limits, reduced);
   EXPECT_LT(reduced.kept.size(), 200u);
   const testing::Loop kept = kept_points(loop, reduced);
-  for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_LE((kept[(i + 1) % kept.size()] - kept[i]).norm(), 0.2);
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    EXPECT_LE((kept[(i + 1) % kept.size()] - kept[i]).norm(), 0.2);
 }
 
 TEST(TriangleMoves, reinserted_points_give_a_simple_polygon_in_the_loops_order) {

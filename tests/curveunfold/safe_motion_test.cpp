@@ -1,11 +1,11 @@
 #include "filter_curveunfold/safe_motion.h"
 
-#include "filter_curveunfold/loop_tree.h"
-#include "tests/support/loop_families.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
+
+#include "filter_curveunfold/loop_tree.h"
+#include "tests/support/loop_families.h"
 
 namespace meshcomplete {
 namespace {
@@ -43,10 +43,11 @@ TEST(SafeMotion, nothing_touches_within_the_certified_fraction) {
 
 TEST(SafeMotion, a_motion_through_itself_is_stopped_before_the_crossing) {
   // A rectangle with a finger: the finger's tip moves through the opposite side half-way.
-  const Loop from = {Vector3(0, 0, 0),  Vector3(4, 0, 0),    Vector3(4, 3, 0),
-                     Vector3(2.5, 3, 0), Vector3(2, 1, 0.1), Vector3(1.5, 3, 0), Vector3(0, 3, 0)};
+  const Loop from = {Vector3(0, 0, 0),   Vector3(4, 0, 0),   Vector3(4, 3, 0), Vector3(2.5, 3, 0),
+                     Vector3(2, 1, 0.1), Vector3(1.5, 3, 0), Vector3(0, 3, 0)};
   Loop to = from;
-  to[4] = Vector3(2, -1, 0.0);  // level with the lower side after half of the way, 0.05 above it: just misses it
+  to[4] =
+      Vector3(2, -1, 0.0);  // level with the lower side after half of the way, 0.05 above it: just misses it
   EXPECT_EQ(safe_fraction(from, from), 1);
   Loop through = to;
   through[4] = Vector3(2, -1, -0.1);

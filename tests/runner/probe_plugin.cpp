@@ -1,7 +1,5 @@
 #include "probe_plugin.h"
 
-#include "common/core/error.h"
-
 #include <vcg/complex/allocate.h>
 
 #include <chrono>
@@ -10,6 +8,8 @@
 #include <limits>
 #include <thread>
 
+#include "common/core/error.h"
+
 namespace {
 
 using namespace meshcomplete;
@@ -17,7 +17,8 @@ using namespace meshcomplete::host;
 
 constexpr auto tick = std::chrono::milliseconds(5);
 
-ParameterDeclaration parameter(ParameterType type, const char* name, const QVariant& fallback, const char* meaning) {
+ParameterDeclaration parameter(ParameterType type, const char* name, const QVariant& fallback,
+                               const char* meaning) {
   ParameterDeclaration declaration;
   declaration.type = type;
   declaration.name = name;
@@ -27,7 +28,8 @@ ParameterDeclaration parameter(ParameterType type, const char* name, const QVari
   return declaration;
 }
 
-ParameterDeclaration ranged(ParameterDeclaration declaration, double minimum, double maximum, const char* unit) {
+ParameterDeclaration ranged(ParameterDeclaration declaration, double minimum, double maximum,
+                            const char* unit) {
   declaration.minimum = minimum;
   declaration.maximum = maximum;
   declaration.unit = unit;
@@ -61,13 +63,18 @@ HoleReport hole(HoleOutcome outcome) {
 /// Adds one triangle over the first three vertices, and reports one hole with the outcome asked for.
 void apply_probe(FilterRun& run) {
   const ParameterValues& values = run.parameters;
-  run.log(QString("Count=%1 Real=%2 Length=%3 Kind=%4 Text=%5").arg(values.integer("Count")).arg(values.real("Real"))
-              .arg(values.real("Length")).arg(values.choice("Kind")).arg(values.text("Text")));
+  run.log(QString("Count=%1 Real=%2 Length=%3 Kind=%4 Text=%5")
+              .arg(values.integer("Count"))
+              .arg(values.real("Real"))
+              .arg(values.real("Length"))
+              .arg(values.choice("Kind"))
+              .arg(values.text("Text")));
   work(run.progress.part(0, 1, "probing"), values.real("Seconds"));
   if (values.boolean("Fail")) throw CompletionError("probing", "The probe was told to fail.");
   run.report.stage_seconds.emplace_back("probing", values.real("Seconds"));
   run.report.notes.push_back("a note");
-  const HoleOutcome outcomes[] = {HoleOutcome::closed, HoleOutcome::partial, HoleOutcome::skipped, HoleOutcome::failed};
+  const HoleOutcome outcomes[] = {HoleOutcome::closed, HoleOutcome::partial, HoleOutcome::skipped,
+                                  HoleOutcome::failed};
   run.report.holes.push_back(hole(outcomes[values.choice("Outcome")]));
   CMeshO& mesh = run.document.mm()->cm;
   if (mesh.vert.size() >= 3 && values.boolean("Change"))

@@ -1,9 +1,9 @@
 // Filters for testing the runner: they do what their parameters say, good or bad.
 #pragma once
 
-#include "common/host/filter_plugin.h"
-
 #include <QObject>
+
+#include "common/host/filter_plugin.h"
 
 class ProbePlugin : public QObject, public meshcomplete::host::FilterPlugin {
   Q_OBJECT

@@ -76,9 +76,11 @@ class Cancel(RunnerCase):
     def test_old_output_survives(self):
         self.make_sphere()
         self.make_sphere("out.ply", hole=False)
-        before = open(self.path("out.ply"), "rb").read()
+        with open(self.path("out.ply"), "rb") as file:
+            before = file.read()
         self.interrupt(0.3, "-i", "sphere.ply", "-f", PROBE, "-p", "Seconds=30", "-o", "out.ply")
-        self.assertEqual(open(self.path("out.ply"), "rb").read(), before)
+        with open(self.path("out.ply"), "rb") as file:
+            self.assertEqual(file.read(), before)
 
 
 if __name__ == "__main__":

@@ -108,6 +108,7 @@ class DamagedFiles(RunnerCase):
 
     def test_unusual_but_right_off(self):
         for text in ("OFF 3 1 0\n0 0 0 1 0 0\n0 1 0\n3 0 1 2\n", "# c\nOFF\n\n3 1 0\n0 0 0\n1 0 0 \n+0 1e0 .0\r\n3 0 1 2 255 0 0\n",
+                     "OFF\n3 1\n0 0 0 # first\n   \n1 0 0\n\t\n0 1 0\n  \n#c\n  3 0\n1 2\n",
                      "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 255 0 0 255\n0 1 0 255 0 0 255\n3\t0 1 2\n"):
             with open(self.path("odd.off"), "w") as file:
                 file.write(text)

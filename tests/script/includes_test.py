@@ -7,7 +7,9 @@ from pathlib import Path
 
 SOURCE = Path(os.environ.get("MESHCOMPLETE_SOURCE", Path(__file__).resolve().parents[2]))
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
-HOST_HEADER = re.compile(r"^(Q[A-Z]\w*|Qt\w*/.*|vcg/.*|wrap/.*|GL/.*|common/(interfaces|meshmodel|ml_mesh_type)\.h|.*mlapplication\.h|.*pluginmanager\.h)$")
+HOST_HEADER = re.compile(
+    r"^(Q[A-Z]\w*|Qt\w*/.*|vcg/.*|wrap/.*|GL/.*|common/(interfaces|meshmodel|ml_mesh_type)\.h"
+    r"|.*(mlapplication|pluginmanager)\.h)$")
 THIRD_PARTY_IN_SOURCES_ONLY = re.compile(r"^(CGAL|boost|tbb|maxflow)/")
 
 

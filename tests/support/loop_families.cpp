@@ -1,7 +1,6 @@
 #include "tests/support/loop_families.h"
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -24,8 +23,10 @@ Vector3 in_ball(std::mt19937_64& random) {
 bool may_meet(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
   constexpr double margin = 1e-3;
   // Sampled generously: the segment is walked in steps of half the margin only where its box comes near.
-  const Vector3 low = a.cwiseMin(b).cwiseMin(c).array() - margin, high = a.cwiseMax(b).cwiseMax(c).array() + margin;
-  if ((p.cwiseMin(q).array() > high.array()).any() || (p.cwiseMax(q).array() < low.array()).any()) return false;
+  const Vector3 low = a.cwiseMin(b).cwiseMin(c).array() - margin,
+                high = a.cwiseMax(b).cwiseMax(c).array() + margin;
+  if ((p.cwiseMin(q).array() > high.array()).any() || (p.cwiseMax(q).array() < low.array()).any())
+    return false;
   const Vector3 normal = (b - a).cross(c - a).normalized();
   const auto inside = [&](const Vector3& x) {
     const auto left_of = [&](const Vector3& from, const Vector3& to) {
@@ -89,7 +90,8 @@ Loop closed_helix(int points, int turns) {
 }
 
 Loop saddle(int points, int waves, double height) {
-  return sampled(points, [=](double t) { return Vector3(std::cos(t), std::sin(t), height * std::cos(waves * t)); });
+  return sampled(points,
+                 [=](double t) { return Vector3(std::cos(t), std::sin(t), height * std::cos(waves * t)); });
 }
 
 Loop torus_knot(int points, int p, int q) {
@@ -151,10 +153,12 @@ Loop rough_rim(int points, std::uint64_t seed) {
     const double along = (back ? 2 - t : t) + (uniform(random) - 0.5) * 0.6 / points;
     // Odd and even points do not lie in line, as on the rim of a strip of triangles.
     const double zigzag = (i % 2 == 0 ? 1 : -1) * 0.25 * step * uniform(random);
-    const double polar = pi / 2 + climb * std::sin(2.5 * along * reach + phase) + (back ? 1 : -1) * half_width + zigzag;
+    const double polar =
+        pi / 2 + climb * std::sin(2.5 * along * reach + phase) + (back ? 1 : -1) * half_width + zigzag;
     const double around = along * reach;
     const double radius = 1 + 0.15 * (uniform(random) - 0.5);
-    loop.push_back(radius * Vector3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)));
+    loop.push_back(radius * Vector3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
+                                    std::cos(polar)));
   }
   return loop;
 }
@@ -188,7 +192,8 @@ bool segments_meet(const GridPoint& a, const GridPoint& b, const GridPoint& c, c
 }  // namespace
 
 Eigen::Vector2d on_grid(const Eigen::Vector2d& point) {
-  return {std::ldexp(std::round(std::ldexp(point.x(), 40)), -40), std::ldexp(std::round(std::ldexp(point.y(), 40)), -40)};
+  return {std::ldexp(std::round(std::ldexp(point.x(), 40)), -40),
+          std::ldexp(std::round(std::ldexp(point.y(), 40)), -40)};
 }
 
 bool is_simple_by_brute_force(const std::vector<Eigen::Vector2d>& polygon) {
@@ -196,7 +201,8 @@ bool is_simple_by_brute_force(const std::vector<Eigen::Vector2d>& polygon) {
   if (n < 3) return false;
   std::vector<GridPoint> p;
   for (const Eigen::Vector2d& q : polygon) {
-    p.push_back({static_cast<std::int64_t>(std::ldexp(q.x(), 40)), static_cast<std::int64_t>(std::ldexp(q.y(), 40))});
+    p.push_back(
+        {static_cast<std::int64_t>(std::ldexp(q.x(), 40)), static_cast<std::int64_t>(std::ldexp(q.y(), 40))});
   }
   for (std::size_t i = 0; i < n; ++i) {
     const GridPoint &a = p[i], &b = p[(i + 1) % n], &c = p[(i + 2) % n];

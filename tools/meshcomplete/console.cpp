@@ -1,17 +1,16 @@
 #include "tools/meshcomplete/console.h"
 
-#include "tools/meshcomplete/errors.h"
-
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <QFile>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+
+#include "tools/meshcomplete/errors.h"
 
 namespace meshcomplete {
 namespace runner {
@@ -103,7 +102,8 @@ void Console::progress(double fraction, const QString& stage) {
     draw(fraction, stage);
   } else {
     if (percent <= last_percent_ || now - last_time_ < line_interval) return;
-    write_line(stderr, QString("%1: %2 %%3").arg(activity_).arg(percent).arg(stage.isEmpty() ? "" : ", " + stage));
+    write_line(stderr,
+               QString("%1: %2 %%3").arg(activity_).arg(percent).arg(stage.isEmpty() ? "" : ", " + stage));
   }
   last_percent_ = percent;
   last_time_ = now;
@@ -112,7 +112,8 @@ void Console::progress(double fraction, const QString& stage) {
 void Console::draw(double fraction, const QString& stage) {
   const double share = std::min(1.0, std::max(0.0, fraction));
   const int filled = int(std::floor(bar_width * share));
-  QString line = QString("[%1%2] %3 % ").arg(QString(filled, '#'), QString(bar_width - filled, '.'))
+  QString line = QString("[%1%2] %3 % ")
+                     .arg(QString(filled, '#'), QString(bar_width - filled, '.'))
                      .arg(int(std::floor(100 * share)), 3);
   line += activity_;
   if (!stage.isEmpty()) line += ": " + stage;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <QString>
-
 #include <chrono>
 #include <cstdio>
 
@@ -12,8 +11,8 @@ namespace runner {
 /// Keeps the program's own output apart from what MeshLab's libraries print on their own.
 class Console {
  public:
-  /// Takes stdout over: from here on only this object writes to it. `log_file` (may be empty) gets a copy of the log,
-  /// appended. Throws UsageError when it cannot be written.
+  /// Takes stdout over: from here on only this object writes to it. `log_file` (may be empty) gets a copy of
+  /// the log, appended. Throws UsageError when it cannot be written.
   Console(bool quiet, const QString& log_file);
   ~Console();
   Console(const Console&) = delete;
@@ -28,7 +27,8 @@ class Console {
 
   /// What is going on now, e.g. "Reading bunny.ply": starts a new line of progress.
   void begin(const QString& activity);
-  /// How far it is (0 to 1). On a terminal one line that is drawn again and again, elsewhere a line now and then.
+  /// How far it is (0 to 1). On a terminal one line that is drawn again and again, elsewhere a line now and
+  /// then.
   void progress(double fraction, const QString& stage);
   /// Removes the progress line.
   void end_progress();

@@ -1,13 +1,12 @@
 #include "tools/meshcomplete/exact_text.h"
 
-#include "tools/meshcomplete/errors.h"
-
 #include <QFile>
 #include <QFileInfo>
-
 #include <charconv>
 #include <fstream>
 #include <string>
+
+#include "tools/meshcomplete/errors.h"
 
 namespace meshcomplete {
 namespace runner {

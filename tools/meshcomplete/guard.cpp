@@ -1,7 +1,5 @@
 #include "tools/meshcomplete/guard.h"
 
-#include "tools/meshcomplete/errors.h"
-
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
@@ -13,6 +11,8 @@
 #include <string>
 #include <thread>
 
+#include "tools/meshcomplete/errors.h"
+
 namespace meshcomplete {
 namespace runner {
 namespace guard {
@@ -22,7 +22,8 @@ namespace {
 /// The signal that a crashed thread sends to the guard's thread.
 constexpr int crash_notice = SIGUSR1;
 constexpr int crash_signals[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL};
-/// A crashed thread may hold a lock that writing the report needs; after this many seconds the program ends without.
+/// A crashed thread may hold a lock that writing the report needs; after this many seconds the program ends
+/// without.
 constexpr unsigned crash_patience = 5;
 
 /// Lives until the process ends: the guard's thread is never joined.
@@ -56,8 +57,9 @@ void write_text(const char* text) {
 
 [[noreturn]] void end_after_crash() {
   const char* name = strsignal(state().crash_signal);
-  end(exit_failed, std::string("Something crashed while ") + state().activity + " (" + name +
-                       "). Nothing was written. The mesh may be damaged, or have faces with a repeated corner.");
+  end(exit_failed,
+      std::string("Something crashed while ") + state().activity + " (" + name +
+          "). Nothing was written. The mesh may be damaged, or have faces with a repeated corner.");
 }
 
 void handle_interrupt() {

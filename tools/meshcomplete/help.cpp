@@ -1,10 +1,9 @@
 #include "tools/meshcomplete/help.h"
 
-#include "tools/meshcomplete/values.h"
-
 #include <QTextDocumentFragment>
-
 #include <cmath>
+
+#include "tools/meshcomplete/values.h"
 
 namespace meshcomplete {
 namespace runner {

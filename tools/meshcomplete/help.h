@@ -1,9 +1,9 @@
 // The texts of --help, --list, --describe and -d.
 #pragma once
 
-#include "common/host/runner_host.h"
-
 #include <QString>
+
+#include "common/host/runner_host.h"
 
 namespace meshcomplete {
 namespace runner {

@@ -1,4 +1,4 @@
-// What is wrong with an input file, found before MeshLab's readers see it.
+// What is wrong with an input file, found before anything is done.
 #pragma once
 
 #include <QString>
@@ -7,13 +7,9 @@
 namespace meshcomplete {
 namespace runner {
 
-/// The file is there, can be read, and is of a known kind. Throws UsageError. `formats` are extensions in lower case.
+/// The file is there, can be read, and is of a known kind. Throws UsageError. `formats` are extensions in
+/// lower case.
 void check_readable(const QString& path, const QStringList& formats);
-
-/// The contents are whole, as far as MeshLab's readers do not check that themselves: the file is not empty, and an OFF
-/// file holds as many vertices and faces as it says, of numbers, with every index in range. Throws Failure.
-/// Cost: one pass over an OFF file.
-void check_contents(const QString& path);
 
 }  // namespace runner
 }  // namespace meshcomplete

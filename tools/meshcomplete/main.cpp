@@ -1,4 +1,17 @@
 // meshcomplete: runs MeshLab filters on mesh files, without a window and without a display.
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <QApplication>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QFileInfo>
+#include <QLocale>
+#include <QSaveFile>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
 #include "common/host/runner_host.h"
 #include "tools/meshcomplete/console.h"
 #include "tools/meshcomplete/errors.h"
@@ -9,20 +22,6 @@
 #include "tools/meshcomplete/report.h"
 #include "tools/meshcomplete/session.h"
 
-#include <tbb/global_control.h>
-#include <unistd.h>
-
-#include <QApplication>
-#include <QDir>
-#include <QElapsedTimer>
-#include <QFileInfo>
-#include <QLocale>
-#include <QSaveFile>
-
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-
 namespace {
 
 using namespace meshcomplete::runner;
@@ -32,8 +31,8 @@ void keep_quiet(QtMsgType type, const QMessageLogContext&, const QString& messag
   if (type == QtCriticalMsg || type == QtFatalMsg) std::fprintf(stderr, "%s\n", qUtf8Printable(message));
 }
 
-/// Numbers are read and written with a decimal point, file names are UTF-8, and no display is asked for, whatever the
-/// caller's environment says.
+/// Numbers are read and written with a decimal point, file names are UTF-8, and no display is asked for,
+/// whatever the caller's environment says.
 void prepare_environment() {
   setenv("LC_ALL", "C.UTF-8", 1);
   setenv("QT_QPA_PLATFORM", "offscreen", 1);
@@ -47,7 +46,8 @@ bool write_report(const Options& options, const RunRecord& record, int exit_code
   if (options.report.isEmpty()) return true;
   QSaveFile file(options.report);
   file.setDirectWriteFallback(true);
-  return file.open(QIODevice::WriteOnly) && file.write(as_json(record, exit_code, message)) >= 0 && file.commit();
+  return file.open(QIODevice::WriteOnly) && file.write(as_json(record, exit_code, message)) >= 0 &&
+         file.commit();
 }
 
 void check_report_path(const Options& options) {
@@ -81,8 +81,8 @@ int run_session(const Options& options, Console& console, SharedRecord& record, 
 
 int run_program(const Options& options) {
   if (options.help || options.version) {
-    const QString version =
-        QString("meshcomplete " MESHCOMPLETE_VERSION " for MeshLab %1").arg(meshcomplete::host::RunnerHost::release());
+    const QString version = QString("meshcomplete " MESHCOMPLETE_VERSION " for MeshLab %1")
+                                .arg(meshcomplete::host::RunnerHost::release());
     std::printf("%s\n", qUtf8Printable(options.help ? help_text() : version));
     return exit_done;
   }

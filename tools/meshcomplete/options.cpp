@@ -1,12 +1,11 @@
 #include "tools/meshcomplete/options.h"
 
+#include <QRegularExpression>
+#include <map>
+
 #include "common/host/runner_host.h"
 #include "tools/meshcomplete/errors.h"
 #include "tools/meshcomplete/suggest.h"
-
-#include <QRegularExpression>
-
-#include <map>
 
 namespace meshcomplete {
 namespace runner {
@@ -36,8 +35,12 @@ class Parser {
   void project_output(const QString& option);
   void threads(const QString& option);
   void overwrite(const QString&);
-  void filter(const QString& option) { options_.steps.push_back({false, value(option, "the name of a filter"), {}}); }
-  void script(const QString& option) { options_.steps.push_back({true, value(option, "a script (.mlx)"), {}}); }
+  void filter(const QString& option) {
+    options_.steps.push_back({false, value(option, "the name of a filter"), {}});
+  }
+  void script(const QString& option) {
+    options_.steps.push_back({true, value(option, "a script (.mlx)"), {}});
+  }
   void dump(const QString& option) { options_.dump_file = value(option, "a file"); }
   void report(const QString& option) { options_.report = value(option, "a file (.json)"); }
   void plugins(const QString& option) { options_.plugin_folders << value(option, "a folder"); }
@@ -85,7 +88,8 @@ void Parser::option(const QString& argument) {
   const auto found = handlers().find(name);
   if (found == handlers().end()) {
     if (!argument.startsWith('-'))
-      throw UsageError("What is \"" + argument + "\" for? Meshes to read go behind -i, the one to write behind -o.");
+      throw UsageError("What is \"" + argument +
+                       "\" for? Meshes to read go behind -i, the one to write behind -o.");
     QStringList known;
     for (const auto& handler : handlers()) known << handler.first;
     throw UsageError("There is no option " + name + "." + did_you_mean(name, known) + " See --help.");
@@ -122,13 +126,15 @@ void Parser::parameter_or_project(const QString& option) {
     const QString given = arguments_[at_++];
     if (given.contains('=')) {
       if (options_.steps.empty() || options_.steps.back().script)
-        throw UsageError("Parameter \"" + given + "\": write the filter it belongs to in front of it (-f NAME -p " + given +
-                         ").");
-      options_.steps.back().parameters.emplace_back(given.section('=', 0, 0).trimmed(), given.section('=', 1));
+        throw UsageError("Parameter \"" + given +
+                         "\": write the filter it belongs to in front of it (-f NAME -p " + given + ").");
+      options_.steps.back().parameters.emplace_back(given.section('=', 0, 0).trimmed(),
+                                                    given.section('=', 1));
     } else if (given.endsWith(".mlp", Qt::CaseInsensitive)) {
       options_.sources.push_back({given, true});
     } else {
-      throw UsageError("\"" + given + "\" behind " + option + " is neither NAME=VALUE nor a MeshLab project (.mlp).");
+      throw UsageError("\"" + given + "\" behind " + option +
+                       " is neither NAME=VALUE nor a MeshLab project (.mlp).");
     }
   } while (at_value() && arguments_[at_].contains('='));
 }
@@ -136,7 +142,8 @@ void Parser::parameter_or_project(const QString& option) {
 void Parser::output(const QString& option) {
   MeshOutput output;
   output.path = value(option, "a mesh file");
-  if (at_value()) throw UsageError("Option -o takes one file; write -o in front of \"" + arguments_[at_] + "\" too.");
+  if (at_value())
+    throw UsageError("Option -o takes one file; write -o in front of \"" + arguments_[at_] + "\" too.");
   options_.outputs.push_back(output);
   after_output_ = true;
 }
@@ -165,7 +172,8 @@ void Parser::attributes(const QString& option) {
       continue;
     }
     if (!known.contains(code))
-      throw UsageError("There is no mesh attribute \"" + code + "\". They are: " + known.join(' ') + ", and sa for ASCII.");
+      throw UsageError("There is no mesh attribute \"" + code + "\". They are: " + known.join(' ') +
+                       ", and sa for ASCII.");
     if (!output.attributes) output.attributes = QStringList();
     *output.attributes << code;
   }

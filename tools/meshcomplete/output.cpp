@@ -1,14 +1,11 @@
 #include "tools/meshcomplete/output.h"
 
-#include "tools/meshcomplete/errors.h"
-
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
-
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,6 +13,8 @@
 #include <mutex>
 #include <set>
 #include <string>
+
+#include "tools/meshcomplete/errors.h"
 
 namespace meshcomplete {
 namespace runner {
@@ -36,7 +35,8 @@ HiddenFolders& hidden_folders() {
 }
 
 void remove_folder(const std::string& path) {
-  // Whoever still writes into the folder may add a file between two looks; once the folder is gone nobody can.
+  // Whoever still writes into the folder may add a file between two looks; once the folder is gone nobody
+  // can.
   std::error_code error;
   for (int attempt = 0; attempt < 100 && fs::exists(path, error); ++attempt) fs::remove_all(path, error);
 }
@@ -44,7 +44,8 @@ void remove_folder(const std::string& path) {
 /// The file that a chain of links ends at, also when that does not exist yet.
 QString resolve(const QString& path) {
   QString target = QFileInfo(path).absoluteFilePath();
-  for (int step = 0; QFileInfo(target).isSymLink() && step < 40; ++step) target = QFileInfo(target).symLinkTarget();
+  for (int step = 0; QFileInfo(target).isSymLink() && step < 40; ++step)
+    target = QFileInfo(target).symLinkTarget();
   return QDir::cleanPath(target);
 }
 
@@ -59,7 +60,9 @@ void OutputSet::claim(const QString& path) {
   file.given = path;
   file.target = resolve(path);
   const QFileInfo target(file.target), folder(target.absolutePath());
-  const auto refuse = [&path](const QString& reason) { throw UsageError("Cannot write " + path + ": " + reason + "."); };
+  const auto refuse = [&path](const QString& reason) {
+    throw UsageError("Cannot write " + path + ": " + reason + ".");
+  };
   if (target.isDir()) refuse("it is a folder");
   if (target.exists() && !target.isFile()) refuse("it is not an ordinary file");
   if (!folder.isDir()) refuse("there is no folder " + folder.filePath());

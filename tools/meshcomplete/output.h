@@ -2,14 +2,13 @@
 #pragma once
 
 #include <QString>
-
 #include <vector>
 
 namespace meshcomplete {
 namespace runner {
 
-/// Files are written in a hidden folder beside their place and then moved there, together with what their format puts
-/// beside them (materials). A link in the place of a file stays a link: its target is replaced.
+/// Files are written in a hidden folder beside their place and then moved there, together with what their
+/// format puts beside them (materials). A link in the place of a file stays a link: its target is replaced.
 class OutputSet {
  public:
   OutputSet() = default;

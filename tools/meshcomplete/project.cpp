@@ -1,13 +1,13 @@
 #include "tools/meshcomplete/project.h"
 
-#include "tools/meshcomplete/errors.h"
-
 #include <QDir>
 #include <QDomDocument>
 #include <QFile>
 #include <QFileInfo>
 #include <QRegularExpression>
 #include <QXmlStreamWriter>
+
+#include "tools/meshcomplete/errors.h"
 
 namespace meshcomplete {
 namespace runner {
@@ -22,7 +22,9 @@ std::array<double, 16> matrix_of(const QDomElement& mesh, const QString& path) {
   bool fine = numbers.size() == 16;
   for (int i = 0; fine && i < 16; ++i) matrix[std::size_t(i)] = numbers[i].toDouble(&fine);
   if (!fine)
-    throw UsageError(QString("The project %1, line %2: a transformation is not 16 numbers.").arg(path).arg(element.lineNumber()));
+    throw UsageError(QString("The project %1, line %2: a transformation is not 16 numbers.")
+                         .arg(path)
+                         .arg(element.lineNumber()));
   return matrix;
 }
 
@@ -39,8 +41,10 @@ std::vector<ProjectLayer> read_project(const QString& path, bool& has_rasters) {
   const QDir folder = QFileInfo(path).absoluteDir();
   std::vector<ProjectLayer> layers;
   const QDomElement group = root.firstChildElement("MeshGroup");
-  for (QDomElement mesh = group.firstChildElement("MLMesh"); !mesh.isNull(); mesh = mesh.nextSiblingElement("MLMesh"))
-    layers.push_back({folder.absoluteFilePath(mesh.attribute("filename")), mesh.attribute("label"), matrix_of(mesh, path)});
+  for (QDomElement mesh = group.firstChildElement("MLMesh"); !mesh.isNull();
+       mesh = mesh.nextSiblingElement("MLMesh"))
+    layers.push_back({folder.absoluteFilePath(mesh.attribute("filename")), mesh.attribute("label"),
+                      matrix_of(mesh, path)});
   has_rasters = !root.firstChildElement("RasterGroup").firstChildElement().isNull();
   return layers;
 }

@@ -3,7 +3,6 @@
 
 #include <QByteArray>
 #include <QString>
-
 #include <array>
 #include <vector>
 
@@ -16,8 +15,8 @@ struct ProjectLayer {
   std::array<double, 16> transformation;  ///< row by row
 };
 
-/// The layers of a project; its photographs are left out, which `has_rasters` tells. Throws UsageError when the file is
-/// not there or not a project.
+/// The layers of a project; its photographs are left out, which `has_rasters` tells. Throws UsageError when
+/// the file is not there or not a project.
 std::vector<ProjectLayer> read_project(const QString& path, bool& has_rasters);
 
 /// A project as it is stored in the file `path`: the layers' files are named relative to it.

@@ -1,24 +1,24 @@
 #include "tools/meshcomplete/report.h"
 
-#include "tools/meshcomplete/errors.h"
-
-#include "common/host/runner_host.h"
-
 #include <sys/resource.h>
 
 #include <QFile>
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
-
 #include <cmath>
+
+#include "common/host/runner_host.h"
+#include "tools/meshcomplete/errors.h"
 
 namespace meshcomplete {
 namespace runner {
 
 namespace {
 
-QJsonValue number(double value) { return std::isfinite(value) ? QJsonValue(value) : QJsonValue(QJsonValue::Null); }
+QJsonValue number(double value) {
+  return std::isfinite(value) ? QJsonValue(value) : QJsonValue(QJsonValue::Null);
+}
 
 QJsonValue number(std::size_t value) { return QJsonValue(static_cast<qint64>(value)); }
 
@@ -99,11 +99,16 @@ QJsonArray stages_as_json(const RunRecord& record) {
 
 QString status_in_words(int exit_code) {
   switch (exit_code) {
-    case exit_done: return "done";
-    case exit_usage: return "wrong usage";
-    case exit_open_holes: return "holes left open";
-    case exit_cancelled: return "cancelled";
-    default: return "failed";
+    case exit_done:
+      return "done";
+    case exit_usage:
+      return "wrong usage";
+    case exit_open_holes:
+      return "holes left open";
+    case exit_cancelled:
+      return "cancelled";
+    default:
+      return "failed";
   }
 }
 

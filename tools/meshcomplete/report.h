@@ -1,14 +1,14 @@
-// The account of a run: what was read, what every filter did to every hole, what was written, and what it cost.
+// The account of a run: what was read, what every filter did to every hole, what was written, and what it
+// cost.
 #pragma once
-
-#include "common/core/patch.h"
 
 #include <QString>
 #include <QStringList>
-
 #include <mutex>
 #include <utility>
 #include <vector>
+
+#include "common/core/patch.h"
 
 namespace meshcomplete {
 namespace runner {

@@ -1,21 +1,29 @@
 #include "tools/meshcomplete/script.h"
 
-#include "tools/meshcomplete/errors.h"
-
 #include <QDomDocument>
 #include <QFile>
+
+#include "tools/meshcomplete/errors.h"
 
 namespace meshcomplete {
 namespace runner {
 
 namespace {
 
-/// The value of a <Param>: one attribute, or the several that MeshLab writes for colours, points and matrices.
+/// The value of a <Param>: one attribute, or the several that MeshLab writes for colours, points and
+/// matrices.
 QString value_of(const QDomElement& element) {
   if (element.hasAttribute("value")) return element.attribute("value");
   QStringList names;
-  if (element.hasAttribute("r")) names << "r" << "g" << "b" << "a";
-  if (element.hasAttribute("x")) names << "x" << "y" << "z";
+  if (element.hasAttribute("r"))
+    names << "r"
+          << "g"
+          << "b"
+          << "a";
+  if (element.hasAttribute("x"))
+    names << "x"
+          << "y"
+          << "z";
   if (element.hasAttribute("val0"))
     for (int i = 0; i < 16; ++i) names << QString("val%1").arg(i);
   QStringList values;
@@ -27,14 +35,18 @@ StepRequest read_filter(const QDomElement& element, const QString& path) {
   StepRequest step;
   step.name = element.attribute("name");
   if (step.name.isEmpty())
-    throw UsageError(QString("Script %1, line %2: a filter has no name.").arg(path).arg(element.lineNumber()));
+    throw UsageError(
+        QString("Script %1, line %2: a filter has no name.").arg(path).arg(element.lineNumber()));
   for (QDomElement child = element.firstChildElement(); !child.isNull(); child = child.nextSiblingElement()) {
     if (child.tagName() != "Param")
       throw UsageError(QString("Script %1, line %2: <%3> is not known inside a filter.")
-                           .arg(path).arg(child.lineNumber()).arg(child.tagName()));
+                           .arg(path)
+                           .arg(child.lineNumber())
+                           .arg(child.tagName()));
     const QString name = child.attribute("name");
     if (name.isEmpty())
-      throw UsageError(QString("Script %1, line %2: a parameter has no name.").arg(path).arg(child.lineNumber()));
+      throw UsageError(
+          QString("Script %1, line %2: a parameter has no name.").arg(path).arg(child.lineNumber()));
     step.parameters.emplace_back(name, value_of(child));
   }
   return step;
@@ -50,7 +62,11 @@ std::vector<StepRequest> read_script(const QString& path) {
   QString message;
   int line = 0, column = 0;
   if (!document.setContent(&file, &message, &line, &column))
-    throw UsageError(QString("The script %1 is not XML: line %2, column %3: %4.").arg(path).arg(line).arg(column).arg(message));
+    throw UsageError(QString("The script %1 is not XML: line %2, column %3: %4.")
+                         .arg(path)
+                         .arg(line)
+                         .arg(column)
+                         .arg(message));
   const QDomElement root = document.documentElement();
   if (root.tagName() != "FilterScript")
     throw UsageError(QString("%1 is not a MeshLab filter script: it starts with <%2>, not <FilterScript>.")
@@ -59,7 +75,9 @@ std::vector<StepRequest> read_script(const QString& path) {
   for (QDomElement child = root.firstChildElement(); !child.isNull(); child = child.nextSiblingElement()) {
     if (child.tagName() != "filter")
       throw UsageError(QString("Script %1, line %2: <%3> is not a filter that this program can run.")
-                           .arg(path).arg(child.lineNumber()).arg(child.tagName()));
+                           .arg(path)
+                           .arg(child.lineNumber())
+                           .arg(child.tagName()));
     steps.push_back(read_filter(child, path));
   }
   if (steps.empty()) throw UsageError(QString("The script %1 has no filters in it.").arg(path));

@@ -1,5 +1,12 @@
 #include "tools/meshcomplete/session.h"
 
+#include <QCoreApplication>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QFileInfo>
+#include <QSaveFile>
+#include <algorithm>
+
 #include "common/core/error.h"
 #include "tools/meshcomplete/errors.h"
 #include "tools/meshcomplete/guard.h"
@@ -9,14 +16,6 @@
 #include "tools/meshcomplete/script.h"
 #include "tools/meshcomplete/suggest.h"
 #include "tools/meshcomplete/values.h"
-
-#include <QCoreApplication>
-#include <QDir>
-#include <QElapsedTimer>
-#include <QFileInfo>
-#include <QSaveFile>
-
-#include <algorithm>
 
 namespace meshcomplete {
 namespace runner {
@@ -28,7 +27,9 @@ namespace {
 
 double seconds_of(const QElapsedTimer& timer) { return double(timer.nsecsElapsed()) * 1e-9; }
 
-QString counts(std::size_t vertices, std::size_t faces) { return QString("%1 vertices, %2 faces").arg(vertices).arg(faces); }
+QString counts(std::size_t vertices, std::size_t faces) {
+  return QString("%1 vertices, %2 faces").arg(vertices).arg(faces);
+}
 
 }  // namespace
 
@@ -78,7 +79,8 @@ void Session::write_dump() {
     guard::set_activity("describing " + filter->name);
     file.write(describe_text(host_, *filter).toUtf8() + "\n\n");
   }
-  if (!file.commit()) throw Failure(QString("Cannot write %1: %2.").arg(options_.dump_file, file.errorString()));
+  if (!file.commit())
+    throw Failure(QString("Cannot write %1: %2.").arg(options_.dump_file, file.errorString()));
 }
 
 const HostFilter& Session::filter_called(const QString& name) {
@@ -90,14 +92,16 @@ const HostFilter& Session::filter_called(const QString& name) {
   if (filter != nullptr) return *filter;
   QStringList names;
   for (const HostFilter* known : host_.filters()) names << known->name;
-  throw UsageError("There is no filter \"" + name + "\"." + did_you_mean(name, names) + " --list shows all of them.");
+  throw UsageError("There is no filter \"" + name + "\"." + did_you_mean(name, names) +
+                   " --list shows all of them.");
 }
 
 void Session::check_request() {
   if (options_.sources.empty() && options_.steps.empty())
     throw UsageError("Nothing to do: give a mesh to read (-i FILE). See --help.");
   if (options_.steps.empty() && options_.outputs.empty() && options_.projects.empty())
-    throw UsageError("Nothing to do: give a filter (-f NAME or -s SCRIPT.mlx) or a file to write (-o FILE). See --help.");
+    throw UsageError(
+        "Nothing to do: give a filter (-f NAME or -s SCRIPT.mlx) or a file to write (-o FILE). See --help.");
   for (const Source& source : options_.sources)
     check_readable(source.path, source.project ? QStringList("mlp") : host_.readable_formats());
   for (const MeshOutput& output : options_.outputs) {
@@ -125,14 +129,16 @@ void Session::add_step(const StepRequest& request) {
   for (std::size_t i = 0; i < step.parameters.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (step.parameters[i].first == step.parameters[j].first)
-        throw UsageError(QString("Parameter \"%1\" of %2 is given twice.").arg(step.parameters[i].first, step.filter->name));
+        throw UsageError(QString("Parameter \"%1\" of %2 is given twice.")
+                             .arg(step.parameters[i].first, step.filter->name));
   if (step.filter->declaration != nullptr) check_declared_parameters(step);
   steps_.push_back(step);
 }
 
 void Session::check_declared_parameters(const Step& step) const {
   QStringList names;
-  for (const ParameterDeclaration& declaration : step.filter->declaration->parameters) names << declaration.name;
+  for (const ParameterDeclaration& declaration : step.filter->declaration->parameters)
+    names << declaration.name;
   for (const auto& given : step.parameters) {
     const int position = names.indexOf(given.first);
     if (position < 0)
@@ -162,7 +168,7 @@ void Session::load_sources() {
 void Session::load_mesh(const QString& path) {
   guard::set_activity("reading " + path);
   console_.begin("Reading " + QFileInfo(path).fileName());
-  check_contents(path);
+  if (QFileInfo(path).size() == 0) throw Failure("The file " + path + " is empty.");
   FileRecord file;
   file.file = QFileInfo(path).absoluteFilePath();
   try {

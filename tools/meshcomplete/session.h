@@ -1,14 +1,14 @@
 // One run of the program, from the checked command line to the files written.
 #pragma once
 
+#include <map>
+#include <vector>
+
 #include "common/host/runner_host.h"
 #include "tools/meshcomplete/console.h"
 #include "tools/meshcomplete/options.h"
 #include "tools/meshcomplete/output.h"
 #include "tools/meshcomplete/report.h"
-
-#include <map>
-#include <vector>
 
 namespace meshcomplete {
 namespace runner {

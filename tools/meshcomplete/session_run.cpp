@@ -1,20 +1,18 @@
 // Running filters and writing files.
-#include "tools/meshcomplete/session.h"
+#include <QDir>
+#include <QElapsedTimer>
+#include <QFile>
+#include <QFileInfo>
+#include <algorithm>
 
 #include "common/core/error.h"
 #include "tools/meshcomplete/errors.h"
 #include "tools/meshcomplete/exact_text.h"
 #include "tools/meshcomplete/guard.h"
 #include "tools/meshcomplete/project.h"
+#include "tools/meshcomplete/session.h"
 #include "tools/meshcomplete/suggest.h"
 #include "tools/meshcomplete/values.h"
-
-#include <QDir>
-#include <QElapsedTimer>
-#include <QFile>
-#include <QFileInfo>
-
-#include <algorithm>
 
 namespace meshcomplete {
 namespace runner {
@@ -108,10 +106,15 @@ void Session::print_open_holes(const CompletionReport& report) {
     if (hole.outcome != HoleOutcome::failed && hole.outcome != HoleOutcome::partial) continue;
     // The filter's own log has said the same, unless nobody has seen it.
     if (!options_.quiet || open++ >= open_holes_listed) continue;
-    console_.warn(QString("hole %1 (%2 edges, near %3, %4, %5) is %6: %7.")
-                      .arg(number + 1).arg(hole.edges).arg(hole.centre.x()).arg(hole.centre.y()).arg(hole.centre.z())
-                      .arg(hole.outcome == HoleOutcome::partial ? "partly open" : "open")
-                      .arg(hole.reason.empty() ? "no reason given" : QString::fromStdString(hole.reason).simplified()));
+    console_.warn(
+        QString("hole %1 (%2 edges, near %3, %4, %5) is %6: %7.")
+            .arg(number + 1)
+            .arg(hole.edges)
+            .arg(hole.centre.x())
+            .arg(hole.centre.y())
+            .arg(hole.centre.z())
+            .arg(hole.outcome == HoleOutcome::partial ? "partly open" : "open")
+            .arg(hole.reason.empty() ? "no reason given" : QString::fromStdString(hole.reason).simplified()));
   }
   open = report.count(HoleOutcome::failed) + report.count(HoleOutcome::partial);
   if (open > 0) console_.warn(QString("%1 of %2 holes were left open.").arg(open).arg(report.holes.size()));
@@ -121,13 +124,18 @@ int Session::layer_for(const MeshOutput& output) const {
   const int count = int(host_.layers().size());
   if (count == 0) throw Failure("There is no mesh to write to " + output.path + ".");
   switch (output.layer.kind) {
-    case LayerChoice::current: return host_.current_layer() < 0 ? count - 1 : host_.current_layer();
-    case LayerChoice::last: return count - 1;
-    case LayerChoice::position: break;
+    case LayerChoice::current:
+      return host_.current_layer() < 0 ? count - 1 : host_.current_layer();
+    case LayerChoice::last:
+      return count - 1;
+    case LayerChoice::position:
+      break;
   }
   if (output.layer.index >= count)
     throw UsageError(QString("Layer %1 of -o %2 does not exist; there are %3 layers, counted from 0.")
-                         .arg(output.layer.index).arg(output.path).arg(count));
+                         .arg(output.layer.index)
+                         .arg(output.path)
+                         .arg(count));
   return output.layer.index;
 }
 
@@ -147,7 +155,8 @@ void Session::save() {
   console_.end_progress();
   record_.edit([&](RunRecord& record) { record.save_seconds = seconds_of(timer); });
   for (const FileRecord& file : record_.copy().outputs)
-    console_.log(QString("Wrote %1: %2 vertices, %3 faces.").arg(file.file).arg(file.vertices).arg(file.faces));
+    console_.log(
+        QString("Wrote %1: %2 vertices, %3 faces.").arg(file.file).arg(file.vertices).arg(file.faces));
 }
 
 void Session::save_layer(int layer, const QString& path, const host::SaveOptions& save_options) {
@@ -179,9 +188,11 @@ QString Session::project_mesh_path(const ProjectOutput& project, const host::Lay
   const QString ending = project.overwrite_meshes ? QString() : QString("_out");
   const QFileInfo file(layer.file);
   if (layer.file.isEmpty() || !file.exists())
-    return QFileInfo(project.path).absolutePath() + "/" + QString(layer.label).remove(' ').replace('/', '_') + ending + ".ply";
+    return QFileInfo(project.path).absolutePath() + "/" + QString(layer.label).remove(' ').replace('/', '_') +
+           ending + ".ply";
   const bool writable = host_.writable_formats().contains(file.suffix().toLower());
-  return file.absolutePath() + "/" + file.completeBaseName() + ending + "." + (writable ? file.suffix() : QString("ply"));
+  return file.absolutePath() + "/" + file.completeBaseName() + ending + "." +
+         (writable ? file.suffix() : QString("ply"));
 }
 
 void Session::save_project(const ProjectOutput& project) {

@@ -1,13 +1,12 @@
 #include "tools/meshcomplete/values.h"
 
-#include "tools/meshcomplete/errors.h"
-#include "tools/meshcomplete/suggest.h"
-
 #include <QLocale>
 #include <QRegularExpression>
-
 #include <cmath>
 #include <limits>
+
+#include "tools/meshcomplete/errors.h"
+#include "tools/meshcomplete/suggest.h"
 
 namespace meshcomplete {
 namespace runner {
@@ -24,15 +23,24 @@ QString number_in_words(double value) { return QString::number(value, 'g', 7); }
 
 ValueKind kind_of(ParameterType type) {
   switch (type) {
-    case ParameterType::boolean: return ValueKind::boolean;
-    case ParameterType::integer: return ValueKind::integer;
-    case ParameterType::real: return ValueKind::real;
-    case ParameterType::length: return ValueKind::length;
-    case ParameterType::choice: return ValueKind::choice;
-    case ParameterType::text: return ValueKind::text;
-    case ParameterType::layer: return ValueKind::layer;
-    case ParameterType::open_file: return ValueKind::open_file;
-    case ParameterType::save_file: return ValueKind::save_file;
+    case ParameterType::boolean:
+      return ValueKind::boolean;
+    case ParameterType::integer:
+      return ValueKind::integer;
+    case ParameterType::real:
+      return ValueKind::real;
+    case ParameterType::length:
+      return ValueKind::length;
+    case ParameterType::choice:
+      return ValueKind::choice;
+    case ParameterType::text:
+      return ValueKind::text;
+    case ParameterType::layer:
+      return ValueKind::layer;
+    case ParameterType::open_file:
+      return ValueKind::open_file;
+    case ParameterType::save_file:
+      return ValueKind::save_file;
   }
   return ValueKind::unsupported;
 }
@@ -42,23 +50,37 @@ class ValueParser {
  public:
   ValueParser(const HostParameter& parameter, const ParameterDeclaration* declaration,
               const std::vector<LayerInfo>& layers, const QString& text)
-      : parameter_(parameter), declaration_(declaration), layers_(layers), text_(text.trimmed()), exact_(text) {}
+      : parameter_(parameter),
+        declaration_(declaration),
+        layers_(layers),
+        text_(text.trimmed()),
+        exact_(text) {}
 
   QVariant parse() const {
     switch (parameter_.kind) {
-      case ValueKind::boolean: return boolean();
-      case ValueKind::integer: return integer();
-      case ValueKind::real: return in_range(number(text_));
-      case ValueKind::length: return length();
-      case ValueKind::choice: return choice();
-      case ValueKind::layer: return layer();
-      case ValueKind::numbers: return numbers();
+      case ValueKind::boolean:
+        return boolean();
+      case ValueKind::integer:
+        return integer();
+      case ValueKind::real:
+        return in_range(number(text_));
+      case ValueKind::length:
+        return length();
+      case ValueKind::choice:
+        return choice();
+      case ValueKind::layer:
+        return layer();
+      case ValueKind::numbers:
+        return numbers();
       case ValueKind::text:
       case ValueKind::open_file:
-      case ValueKind::save_file: return exact_;
-      case ValueKind::unsupported: break;
+      case ValueKind::save_file:
+        return exact_;
+      case ValueKind::unsupported:
+        break;
     }
-    throw UsageError(QString("Parameter \"%1\" cannot be set here; leave it out to use its default.").arg(parameter_.name));
+    throw UsageError(QString("Parameter \"%1\" cannot be set here; leave it out to use its default.")
+                         .arg(parameter_.name));
   }
 
  private:
@@ -83,7 +105,8 @@ class ValueParser {
     if (!fine && text.contains(',')) wrong("is not a number", " Write the decimal point as a point.");
     if (!fine) wrong("is not a number");
     // MeshLab hands parameters on as floats.
-    if (!std::isfinite(value) || std::abs(value) > double(std::numeric_limits<float>::max())) wrong("is too large");
+    if (!std::isfinite(value) || std::abs(value) > double(std::numeric_limits<float>::max()))
+      wrong("is too large");
     return value;
   }
 
@@ -162,21 +185,32 @@ HostParameter as_host_parameter(const ParameterDeclaration& declaration) {
 
 QString type_in_words(const HostParameter& parameter) {
   switch (parameter.kind) {
-    case ValueKind::boolean: return "true or false";
-    case ValueKind::integer: return "whole number";
-    case ValueKind::real: return "number";
-    case ValueKind::length: return "length in mesh units, or per cent of the diagonal (2%)";
+    case ValueKind::boolean:
+      return "true or false";
+    case ValueKind::integer:
+      return "whole number";
+    case ValueKind::real:
+      return "number";
+    case ValueKind::length:
+      return "length in mesh units, or per cent of the diagonal (2%)";
     case ValueKind::choice: {
       QStringList numbered;
-      for (int i = 0; i < parameter.choices.size(); ++i) numbered << QString("%1 = %2").arg(i).arg(parameter.choices[i]);
+      for (int i = 0; i < parameter.choices.size(); ++i)
+        numbered << QString("%1 = %2").arg(i).arg(parameter.choices[i]);
       return "one of " + numbered.join(", ");
     }
-    case ValueKind::text: return "text";
-    case ValueKind::layer: return "layer, counted from 0, or its name";
-    case ValueKind::open_file: return "file to read";
-    case ValueKind::save_file: return "file to write";
-    case ValueKind::numbers: return QString("%1 numbers").arg(parameter.count);
-    case ValueKind::unsupported: break;
+    case ValueKind::text:
+      return "text";
+    case ValueKind::layer:
+      return "layer, counted from 0, or its name";
+    case ValueKind::open_file:
+      return "file to read";
+    case ValueKind::save_file:
+      return "file to write";
+    case ValueKind::numbers:
+      return QString("%1 numbers").arg(parameter.count);
+    case ValueKind::unsupported:
+      break;
   }
   return "cannot be set here";
 }
@@ -185,7 +219,8 @@ QString range_in_words(const ParameterDeclaration& declaration) {
   if (declaration.type == ParameterType::choice) return QString();
   // The largest int stands for "no limit".
   const bool low = std::isfinite(declaration.minimum);
-  const bool high = std::isfinite(declaration.maximum) && declaration.maximum < std::numeric_limits<int>::max();
+  const bool high =
+      std::isfinite(declaration.maximum) && declaration.maximum < std::numeric_limits<int>::max();
   if (low && high)
     return number_in_words(declaration.minimum) + " to " + number_in_words(declaration.maximum);
   if (low) return "at least " + number_in_words(declaration.minimum);
@@ -195,12 +230,16 @@ QString range_in_words(const ParameterDeclaration& declaration) {
 
 QString value_in_words(const HostParameter& parameter, const QVariant& value) {
   switch (parameter.kind) {
-    case ValueKind::boolean: return value.toBool() ? "true" : "false";
+    case ValueKind::boolean:
+      return value.toBool() ? "true" : "false";
     case ValueKind::integer:
-    case ValueKind::layer: return QString::number(value.toInt());
+    case ValueKind::layer:
+      return QString::number(value.toInt());
     case ValueKind::real:
-    case ValueKind::length: return number_in_words(value.toDouble());
-    case ValueKind::choice: return parameter.choices.value(value.toInt(), QString::number(value.toInt()));
+    case ValueKind::length:
+      return number_in_words(value.toDouble());
+    case ValueKind::choice:
+      return parameter.choices.value(value.toInt(), QString::number(value.toInt()));
     case ValueKind::numbers: {
       QStringList parts;
       for (const QVariant& number : value.toList()) parts << number_in_words(number.toDouble());
@@ -208,8 +247,10 @@ QString value_in_words(const HostParameter& parameter, const QVariant& value) {
     }
     case ValueKind::text:
     case ValueKind::open_file:
-    case ValueKind::save_file: return value.toString();
-    case ValueKind::unsupported: break;
+    case ValueKind::save_file:
+      return value.toString();
+    case ValueKind::unsupported:
+      break;
   }
   return QString();
 }

@@ -1,18 +1,17 @@
 // Parameter values: from text to what a filter takes.
 #pragma once
 
-#include "common/host/runner_host.h"
-
 #include <QString>
 #include <QVariant>
-
 #include <vector>
+
+#include "common/host/runner_host.h"
 
 namespace meshcomplete {
 namespace runner {
 
-/// A declared parameter as the host describes one, without a document: lengths in per cent have no meaning yet, and the
-/// default is the one that does not depend on the mesh.
+/// A declared parameter as the host describes one, without a document: lengths in per cent have no meaning
+/// yet, and the default is the one that does not depend on the mesh.
 host::HostParameter as_host_parameter(const host::ParameterDeclaration& declaration);
 
 /// "integer", "one of projection, annealing", ...
@@ -22,9 +21,9 @@ QString range_in_words(const host::ParameterDeclaration& declaration);
 /// A value as the user would write it.
 QString value_in_words(const host::HostParameter& parameter, const QVariant& value);
 
-/// The value that `text` stands for: `2%` for lengths, choices by position or name, layers by position or label.
-/// `declaration` (may be null) adds the allowed range. Throws UsageError that names the parameter, what is wrong, and
-/// what is allowed.
+/// The value that `text` stands for: `2%` for lengths, choices by position or name, layers by position or
+/// label. `declaration` (may be null) adds the allowed range. Throws UsageError that names the parameter,
+/// what is wrong, and what is allowed.
 QVariant parse_value(const host::HostParameter& parameter, const host::ParameterDeclaration* declaration,
                      const std::vector<host::LayerInfo>& layers, const QString& text);
 
