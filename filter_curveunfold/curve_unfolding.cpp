@@ -46,13 +46,6 @@ class StageClock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Corners corners_of(const TriangleMesh& mesh, const Patch& patch, const Triangle& t) {
-  const auto at = [&](Index v) {
-    return v < patch.input_vertices ? mesh.vertices[v] : patch.vertices[v - patch.input_vertices];
-  };
-  return {at(t[0]), at(t[1]), at(t[2])};
-}
-
 // All holes of one run, each filled on its own and then made to fit with the others.
 class Run {
  public:
@@ -112,7 +105,7 @@ std::vector<std::size_t> Run::holes_in_conflict() const {
   std::vector<std::size_t> owner;
   for (std::size_t hole = 0; hole < filled_.size(); ++hole)
     for (const Triangle& t : filled_[hole].patch.triangles) {
-      triangles.push_back(corners_of(mesh_, filled_[hole].patch, t));
+      triangles.push_back(corners(mesh_, filled_[hole].patch, t));
       owner.push_back(hole);
     }
   std::vector<std::size_t> conflicts;
@@ -130,7 +123,7 @@ void Run::separate(const Progress& progress) {
     for (std::size_t other = 0; other < filled_.size(); ++other)
       if (other != hole)
         for (const Triangle& t : filled_[other].patch.triangles)
-          obstacles.push_back(corners_of(mesh_, filled_[other].patch, t));
+          obstacles.push_back(corners(mesh_, filled_[other].patch, t));
     filled_[hole] = fill_hole(context_, loops_[hole], obstacles, progress);
     record(hole);
   }

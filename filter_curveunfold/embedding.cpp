@@ -46,7 +46,7 @@ void solve(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeig
 
 }  // namespace
 
-EmbeddedPatch embed(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options,
+PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options,
                     const Progress& progress) {
   PatchMesh patch(rim.positions, rim.positions.size(), flat);
   std::vector<double> target = target_lengths(rim, options);
@@ -63,11 +63,8 @@ EmbeddedPatch embed(const Rim& rim, const std::vector<Triangle>& flat, const Emb
       solve(patch, rim, options.energy, options.weights, progress.part(0.4 * i + 0.2, 0.4 * i + 0.6, ""));
     }
   }
-  EmbeddedPatch result;
-  result.inner.assign(patch.positions().begin() + static_cast<std::ptrdiff_t>(patch.rim_size()), patch.positions().end());
-  result.triangles = patch.triangles();
   progress.update(1.0);
-  return result;
+  return patch;
 }
 
 }  // namespace meshcomplete

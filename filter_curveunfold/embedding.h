@@ -3,6 +3,7 @@
 
 #include "common/core/fairing.h"
 #include "common/core/mesh.h"
+#include "common/core/patch_mesh.h"
 #include "common/core/progress.h"
 #include "common/core/rim.h"
 
@@ -18,17 +19,11 @@ struct EmbeddingOptions {
   double resolution = 1.0;            ///< the target edge length is divided by this
 };
 
-/// A patch over one rim. Corners below the rim's size are loop positions, the others `inner` vertices.
-struct EmbeddedPatch {
-  std::vector<Vector3> inner;
-  std::vector<Triangle> triangles;
-};
-
 /// Puts the flat triangulation `flat` of the unfolded rim onto the rim's positions in space, refines it to the resolution
 /// of the surrounding mesh, and moves the new vertices to the minimum of the energy; triangles are kept well-shaped by
-/// remeshing between the solves. Rim edges are never split. Throws `Cancelled`, CompletionError.
+/// remeshing between the solves. The result is compact; its rim vertices are the loop's, in their order. Rim edges are never split. Throws `Cancelled`, CompletionError.
 /// Cost: near-linear in the vertices of the patch.
-EmbeddedPatch embed(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options,
+PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options,
                     const Progress& progress = Progress());
 
 }  // namespace meshcomplete

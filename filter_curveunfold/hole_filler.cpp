@@ -1,6 +1,7 @@
 #include "filter_curveunfold/hole_filler.h"
 
 #include "common/core/error.h"
+#include "common/core/patch_relaxation.h"
 #include "common/core/rim.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_curveunfold/embedding.h"
@@ -15,6 +16,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// How often a tangled patch is relaxed, each time over one more ring, and the sweeps each time: enough for a few rings to
+// settle on the membrane.
+constexpr int most_relaxations = 5;
+constexpr int relaxation_sweeps = 10;
 
 // One way to close the hole.
 struct Try {
@@ -69,9 +75,10 @@ class HoleFiller {
 
  private:
   bool unfold_rim(bool stretched);
-  Patch attempt(const Try& plan);
-  std::string defect_of(const Patch& patch);
-  Patch as_patch(const EmbeddedPatch& embedded) const;
+  std::string attempt(const Try& plan);
+  std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
+  Patch as_patch(const PatchMesh& embedded) const;
+  std::string route(const Try& plan, int count) const;
 
   const HoleFillerContext& context_;
   const BoundaryLoop& loop_;
@@ -80,6 +87,7 @@ class HoleFiller {
   Rim rim_;
   Unfolding unfolding_;
   FilledHole result_;
+  bool relaxed_ = false;
 };
 
 // Unfolds and triangulates; false when that cannot be done, with the reason set for the first unfolding.
@@ -102,12 +110,12 @@ bool HoleFiller::unfold_rim(bool stretched) {
   return true;
 }
 
-Patch HoleFiller::as_patch(const EmbeddedPatch& embedded) const {
+Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
   Patch patch;
   patch.input_vertices = static_cast<Index>(context_.mesh.vertices.size());
   const Index rim_size = static_cast<Index>(loop_.vertices.size());
-  for (const Vector3& p : embedded.inner) patch.vertices.push_back(as_stored(p));
-  for (Triangle t : embedded.triangles) {
+  for (Index v = rim_size; v < embedded.vertex_count(); ++v) patch.vertices.push_back(as_stored(embedded.position(v)));
+  for (Triangle t : embedded.triangles()) {
     for (Index& corner : t)
       corner = corner < rim_size ? loop_.vertices[corner] : patch.input_vertices + (corner - rim_size);
     patch.triangles.push_back(t);
@@ -115,34 +123,57 @@ Patch HoleFiller::as_patch(const EmbeddedPatch& embedded) const {
   return patch;
 }
 
-std::string HoleFiller::defect_of(const Patch& patch) {
+// Checks the patch. When triangles meet what they must not, returns them; `defect` is empty when all is well.
+std::vector<Index> HoleFiller::tangled_triangles(const Patch& patch, std::string& defect) {
   const auto start = Clock::now();
-  const PatchCheck check = check_patch(context_.neighbourhood, patch, {&loop_}, progress_);
-  std::string defect = check.passed() ? std::string() : describe(check.defect);
+  PatchCheck check = check_patch(context_.neighbourhood, patch, {&loop_}, progress_);
+  defect = check.passed() ? std::string() : describe(check.defect);
   if (defect.empty() && !obstacles_.empty()) {
     std::vector<std::array<Vector3, 3>> triangles;
-    for (const Triangle& t : patch.triangles) {
-      const auto corner = [&](int k) {
-        return t[k] < patch.input_vertices ? context_.mesh.vertices[t[k]] : patch.vertices[t[k] - patch.input_vertices];
-      };
-      triangles.push_back({corner(0), corner(1), corner(2)});
-    }
-    if (!improper_pairs_between(triangles, obstacles_).empty()) defect = "the patch meets the patch of another hole";
+    for (const Triangle& t : patch.triangles) triangles.push_back(corners(context_.mesh, patch, t));
+    for (const auto& pair : improper_pairs_between(triangles, obstacles_)) check.patch_triangles.push_back(pair.first);
+    if (!check.patch_triangles.empty()) defect = "the patch meets the patch of another hole";
   }
   result_.times.checking += seconds_since(start);
-  return defect;
+  return std::move(check.patch_triangles);
 }
 
-Patch HoleFiller::attempt(const Try& plan) {
-  const auto start = Clock::now();
+// Embeds, checks, and relaxes the patch where it is tangled. Returns the defect that is left, or fills `result_.patch`.
+std::string HoleFiller::attempt(const Try& plan) {
+  auto start = Clock::now();
   EmbeddingOptions options;
   options.energy = plan.energy;
   options.weights = context_.options.weights;
   options.edge_length = context_.options.edge_length;
   options.resolution = plan.resolution;
-  const EmbeddedPatch embedded = embed(rim_, result_.flat, options, progress_);
+  PatchMesh embedded = embed(rim_, result_.flat, options, progress_);
   result_.times.embedding += seconds_since(start);
-  return as_patch(embedded);
+  std::string first_defect;
+  for (int relaxations = 0;; ++relaxations) {
+    std::string defect;
+    Patch patch = as_patch(embedded);
+    const std::vector<Index> tangled = tangled_triangles(patch, defect);
+    if (defect.empty()) {
+      result_.patch = std::move(patch);
+      relaxed_ = relaxations > 0;
+      return {};
+    }
+    if (first_defect.empty()) first_defect = defect;
+    if (tangled.empty() || relaxations == most_relaxations) return first_defect;
+    start = Clock::now();
+    relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
+    result_.times.embedding += seconds_since(start);
+  }
+}
+
+std::string HoleFiller::route(const Try& plan, int count) const {
+  std::string route = unfolding_name(unfolding_.outcome);
+  if (plan.stretched) route += " and stretched";
+  route += std::string(", ") + name(plan.energy);
+  if (plan.resolution > 1) route += ", finer";
+  if (relaxed_) route += ", relaxed locally";
+  if (count > 1) route += ", try " + std::to_string(count);
+  return route;
 }
 
 FilledHole HoleFiller::fill() {
@@ -157,14 +188,10 @@ FilledHole HoleFiller::fill() {
     ++count;
     std::string defect;
     try {
-      Patch patch = attempt(plan);
-      defect = defect_of(patch);
+      defect = attempt(plan);
       if (defect.empty()) {
-        result_.patch = std::move(patch);
         result_.reason.clear();
-        result_.route = unfolding_name(unfolding_.outcome) + (plan.stretched ? " and stretched" : "") + ", " +
-                        name(plan.energy) + (plan.resolution > 1 ? ", finer" : "") +
-                        (count > 1 ? ", try " + std::to_string(count) : "");
+        result_.route = route(plan, count);
         return std::move(result_);
       }
     } catch (const Cancelled&) {

@@ -6,6 +6,13 @@ namespace meshcomplete {
 
 Vector3 as_stored(const Vector3& position) { return position.cast<float>().cast<double>(); }
 
+std::array<Vector3, 3> corners(const TriangleMesh& mesh, const Patch& patch, const Triangle& triangle) {
+  const auto at = [&](Index v) {
+    return v < patch.input_vertices ? mesh.vertices[v] : patch.vertices[v - patch.input_vertices];
+  };
+  return {at(triangle[0]), at(triangle[1]), at(triangle[2])};
+}
+
 void append(Patch& patch, const Patch& other) {
   const Index offset = static_cast<Index>(patch.vertices.size());
   patch.input_vertices = other.input_vertices;

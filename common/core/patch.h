@@ -4,7 +4,7 @@
 #include "common/core/boundary_loops.h"
 #include "common/core/mesh.h"
 
-#include <optional>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +24,9 @@ struct Patch {
 
 /// Rounds to the nearest float, coordinate by coordinate: the value that MeshLab will store.
 Vector3 as_stored(const Vector3& position);
+
+/// Positions of the corners of a triangle of `patch`, which belongs to `mesh`.
+std::array<Vector3, 3> corners(const TriangleMesh& mesh, const Patch& patch, const Triangle& triangle);
 
 /// Appends `other` (over the same input mesh) to `patch`, renumbering its new vertices.
 void append(Patch& patch, const Patch& other);

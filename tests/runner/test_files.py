@@ -202,7 +202,8 @@ class Outputs(RunnerCase):
 
     def test_several_outputs_and_names_with_odd_letters(self):
         self.make_sphere("in \u00e4 %1.ply")
-        self.check(0, "-i", "in \u00e4 %1.ply", "-o", "out \u00e9 %2.ply", "-o", "b.off", environment={"LC_ALL": "C"})
+        result = self.check(0, "-i", "in \u00e4 %1.ply", "-o", "out \u00e9 %2.ply", "-o", "b.off", environment={"LC_ALL": "C"})
+        self.assertIn("out \u00e9 %2.ply: ", result.stdout)
         self.assertTrue(Ply(self.path("out \u00e9 %2.ply")).complete)
         self.assertTrue(os.path.exists(self.path("b.off")))
 

@@ -103,7 +103,7 @@ void Console::progress(double fraction, const QString& stage) {
   } else {
     if (percent <= last_percent_ || now - last_time_ < line_interval) return;
     write_line(stderr,
-               QString("%1: %2 %%3").arg(activity_).arg(percent).arg(stage.isEmpty() ? "" : ", " + stage));
+               activity_ + ": " + QString::number(percent) + " %" + (stage.isEmpty() ? "" : ", " + stage));
   }
   last_percent_ = percent;
   last_time_ = now;

@@ -23,8 +23,7 @@ std::array<double, 16> matrix_of(const QDomElement& mesh, const QString& path) {
   for (int i = 0; fine && i < 16; ++i) matrix[std::size_t(i)] = numbers[i].toDouble(&fine);
   if (!fine)
     throw UsageError(QString("The project %1, line %2: a transformation is not 16 numbers.")
-                         .arg(path)
-                         .arg(element.lineNumber()));
+                         .arg(path, QString::number(element.lineNumber())));
   return matrix;
 }
 

@@ -18,6 +18,9 @@ struct FileRecord {
   std::size_t vertices = 0;
   std::size_t faces = 0;
   QStringList notes;
+
+  /// "12 vertices, 20 faces"
+  QString counts() const { return QString("%1 vertices, %2 faces").arg(vertices).arg(faces); }
 };
 
 struct FilterRecord {

@@ -35,18 +35,16 @@ StepRequest read_filter(const QDomElement& element, const QString& path) {
   StepRequest step;
   step.name = element.attribute("name");
   if (step.name.isEmpty())
-    throw UsageError(
-        QString("Script %1, line %2: a filter has no name.").arg(path).arg(element.lineNumber()));
+    throw UsageError(QString("Script %1, line %2: a filter has no name.")
+                         .arg(path, QString::number(element.lineNumber())));
   for (QDomElement child = element.firstChildElement(); !child.isNull(); child = child.nextSiblingElement()) {
     if (child.tagName() != "Param")
       throw UsageError(QString("Script %1, line %2: <%3> is not known inside a filter.")
-                           .arg(path)
-                           .arg(child.lineNumber())
-                           .arg(child.tagName()));
+                           .arg(path, QString::number(child.lineNumber()), child.tagName()));
     const QString name = child.attribute("name");
     if (name.isEmpty())
-      throw UsageError(
-          QString("Script %1, line %2: a parameter has no name.").arg(path).arg(child.lineNumber()));
+      throw UsageError(QString("Script %1, line %2: a parameter has no name.")
+                           .arg(path, QString::number(child.lineNumber())));
     step.parameters.emplace_back(name, value_of(child));
   }
   return step;
@@ -63,10 +61,7 @@ std::vector<StepRequest> read_script(const QString& path) {
   int line = 0, column = 0;
   if (!document.setContent(&file, &message, &line, &column))
     throw UsageError(QString("The script %1 is not XML: line %2, column %3: %4.")
-                         .arg(path)
-                         .arg(line)
-                         .arg(column)
-                         .arg(message));
+                         .arg(path, QString::number(line), QString::number(column), message));
   const QDomElement root = document.documentElement();
   if (root.tagName() != "FilterScript")
     throw UsageError(QString("%1 is not a MeshLab filter script: it starts with <%2>, not <FilterScript>.")
@@ -75,9 +70,7 @@ std::vector<StepRequest> read_script(const QString& path) {
   for (QDomElement child = root.firstChildElement(); !child.isNull(); child = child.nextSiblingElement()) {
     if (child.tagName() != "filter")
       throw UsageError(QString("Script %1, line %2: <%3> is not a filter that this program can run.")
-                           .arg(path)
-                           .arg(child.lineNumber())
-                           .arg(child.tagName()));
+                           .arg(path, QString::number(child.lineNumber()), child.tagName()));
     steps.push_back(read_filter(child, path));
   }
   if (steps.empty()) throw UsageError(QString("The script %1 has no filters in it.").arg(path));

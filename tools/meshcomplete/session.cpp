@@ -5,7 +5,6 @@
 #include <QElapsedTimer>
 #include <QFileInfo>
 #include <QSaveFile>
-#include <algorithm>
 
 #include "common/core/error.h"
 #include "tools/meshcomplete/errors.h"
@@ -26,10 +25,6 @@ using host::ParameterDeclaration;
 namespace {
 
 double seconds_of(const QElapsedTimer& timer) { return double(timer.nsecsElapsed()) * 1e-9; }
-
-QString counts(std::size_t vertices, std::size_t faces) {
-  return QString("%1 vertices, %2 faces").arg(vertices).arg(faces);
-}
 
 }  // namespace
 
@@ -181,7 +176,7 @@ void Session::load_mesh(const QString& path) {
   const host::LayerInfo layer = host_.layers().back();
   file.vertices = layer.vertices;
   file.faces = layer.faces;
-  console_.log(QString("Read %1: %2.").arg(path, counts(file.vertices, file.faces)));
+  console_.log(QString("Read %1: %2.").arg(path, file.counts()));
   for (const QString& note : file.notes) console_.log("  " + note);
   record_.edit([&](RunRecord& record) { record.inputs.push_back(file); });
 }

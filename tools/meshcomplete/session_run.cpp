@@ -3,7 +3,6 @@
 #include <QElapsedTimer>
 #include <QFile>
 #include <QFileInfo>
-#include <algorithm>
 
 #include "common/core/error.h"
 #include "tools/meshcomplete/errors.h"
@@ -132,10 +131,11 @@ int Session::layer_for(const MeshOutput& output) const {
       break;
   }
   if (output.layer.index >= count)
-    throw UsageError(QString("Layer %1 of -o %2 does not exist; there are %3 layers, counted from 0.")
-                         .arg(output.layer.index)
-                         .arg(output.path)
-                         .arg(count));
+    throw UsageError(
+        QString("There is no layer %1; there are %2 layers, counted from 0. It is asked for by -o ")
+            .arg(output.layer.index)
+            .arg(count) +
+        output.path + ".");
   return output.layer.index;
 }
 
@@ -155,8 +155,7 @@ void Session::save() {
   console_.end_progress();
   record_.edit([&](RunRecord& record) { record.save_seconds = seconds_of(timer); });
   for (const FileRecord& file : record_.copy().outputs)
-    console_.log(
-        QString("Wrote %1: %2 vertices, %3 faces.").arg(file.file).arg(file.vertices).arg(file.faces));
+    console_.log(QString("Wrote %1: %2.").arg(file.file, file.counts()));
 }
 
 void Session::save_layer(int layer, const QString& path, const host::SaveOptions& save_options) {
