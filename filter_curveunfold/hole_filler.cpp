@@ -2,13 +2,17 @@
 
 #include "common/core/error.h"
 #include "common/core/patch_relaxation.h"
+#include "common/core/patch_untangling.h"
 #include "common/core/rim.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_curveunfold/embedding.h"
+#include "filter_curveunfold/pinched_rim.h"
 #include "filter_curveunfold/polygon_triangulation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 namespace meshcomplete {
 namespace {
@@ -17,31 +21,39 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// How often a tangled patch is relaxed, each time over one more ring, and the sweeps each time: enough for a few rings to
-// settle on the membrane.
-constexpr int most_relaxations = 5;
+// A tangled patch is first relaxed, each time over one more ring and with enough sweeps for a few rings to settle on the
+// membrane; then vertices are moved one by one. A patch with more tangled triangles than this is not worth it.
+constexpr int plain_relaxations = 2;
+constexpr int most_relaxations = 8;
 constexpr int relaxation_sweeps = 10;
+constexpr int untangling_rounds = 3;
+constexpr std::size_t most_tangled = 300;
+
+// A patch of more triangles is not tried again at twice the resolution: its trouble is its shape.
+constexpr std::size_t most_triangles_to_refine = 5000;
 
 // One way to close the hole.
 struct Try {
   bool stretched;  // the second unfolding
   SurfaceEnergy energy;
   double resolution;
+  double flap_height;  // of the flaps that open a pinched rim
 };
 
 SurfaceEnergy other_energy(SurfaceEnergy energy) {
   return energy == SurfaceEnergy::membrane ? SurfaceEnergy::thin_plate : SurfaceEnergy::membrane;
 }
 
-// What is asked for; the other energy; more resolution; and all of them again with another unfolding.
-std::vector<Try> tries(const CurveUnfoldingOptions& options) {
+// What is asked for; the other energy; more resolution; and all of them again with another unfolding. A pinched rim is opened
+// behind the surface first, where it shows least.
+std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   std::vector<Try> list;
-  for (bool stretched : {false, true}) {
-    list.push_back({stretched, options.energy, 1.0});
-    list.push_back({stretched, other_energy(options.energy), 1.0});
-    list.push_back({stretched, options.energy, 2.0});
-    list.push_back({stretched, other_energy(options.energy), 2.0});
-  }
+  const std::vector<double> heights = pinched ? std::vector<double>{0.2, -0.2, 0.07, -0.07} : std::vector<double>{0.0};
+  for (bool stretched : {false, true})
+    for (double height : heights)
+      for (double resolution : {1.0, 2.0})
+        for (SurfaceEnergy energy : {options.energy, other_energy(options.energy)})
+          list.push_back({stretched, energy, resolution, height});
   return list;
 }
 
@@ -69,12 +81,12 @@ class HoleFiller {
   HoleFiller(const HoleFillerContext& context, const BoundaryLoop& loop,
              const std::vector<std::array<Vector3, 3>>& obstacles, const Progress& progress)
       : context_(context), loop_(loop), obstacles_(obstacles), progress_(progress),
-        rim_(collect_rim(context.mesh, context.topology, loop)) {}
+        rim_(collect_rim(context.mesh, context.topology, loop)), pinched_(is_pinched(rim_)) {}
 
   FilledHole fill();
 
  private:
-  bool unfold_rim(bool stretched);
+  bool unfold_rim(const Try& plan);
   std::string attempt(const Try& plan);
   std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
   Patch as_patch(const PatchMesh& embedded) const;
@@ -85,21 +97,25 @@ class HoleFiller {
   const std::vector<std::array<Vector3, 3>>& obstacles_;
   const Progress& progress_;
   Rim rim_;
+  const bool pinched_;
+  OpenedRim opened_;  // what is unfolded and filled
   Unfolding unfolding_;
   FilledHole result_;
   bool relaxed_ = false;
+  std::size_t triangles_ = 0;  // of the last embedded patch
 };
 
-// Unfolds and triangulates; false when that cannot be done, with the reason set for the first unfolding.
-bool HoleFiller::unfold_rim(bool stretched) {
+// Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is none yet.
+bool HoleFiller::unfold_rim(const Try& plan) {
+  opened_ = open_pinches(rim_, plan.flap_height);
   UnfoldOptions options = context_.options.unfolding;
-  options.stretch = stretched;
-  Unfolding unfolding = unfold(rim_.positions, options, progress_);
+  options.stretch = plan.stretched;
+  Unfolding unfolding = unfold(opened_.rim.positions, options, progress_);
   result_.times.unfolding += unfolding.seconds;
   result_.times.restarts += unfolding.restarts;
   result_.times.steps += unfolding.steps;
   if (unfolding.polygon.empty()) {
-    if (!stretched) result_.reason = why_not_unfolded(unfolding);
+    if (result_.reason.empty()) result_.reason = why_not_unfolded(unfolding);
     return false;
   }
   const auto start = Clock::now();
@@ -114,12 +130,19 @@ Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
   Patch patch;
   patch.input_vertices = static_cast<Index>(context_.mesh.vertices.size());
   const Index rim_size = static_cast<Index>(loop_.vertices.size());
+  patch.vertices = opened_.corners;
+  const Index first_inner = patch.input_vertices + static_cast<Index>(opened_.corners.size());
   for (Index v = rim_size; v < embedded.vertex_count(); ++v) patch.vertices.push_back(as_stored(embedded.position(v)));
-  for (Triangle t : embedded.triangles()) {
-    for (Index& corner : t)
-      corner = corner < rim_size ? loop_.vertices[corner] : patch.input_vertices + (corner - rim_size);
-    patch.triangles.push_back(t);
+  const auto rim_vertex = [&](Index v) {
+    return v < rim_size ? loop_.vertices[v] : patch.input_vertices + (v - rim_size);
+  };
+  for (const Triangle& t : embedded.triangles()) {
+    Triangle corners;
+    for (int k = 0; k < 3; ++k)
+      corners[k] = t[k] < rim_size ? rim_vertex(opened_.vertex_of[t[k]]) : first_inner + (t[k] - rim_size);
+    patch.triangles.push_back(corners);
   }
+  for (const Triangle& t : opened_.flaps) patch.triangles.push_back({rim_vertex(t[0]), rim_vertex(t[1]), rim_vertex(t[2])});
   return patch;
 }
 
@@ -146,28 +169,35 @@ std::string HoleFiller::attempt(const Try& plan) {
   options.weights = context_.options.weights;
   options.edge_length = context_.options.edge_length;
   options.resolution = plan.resolution;
-  PatchMesh embedded = embed(rim_, result_.flat, options, progress_);
+  PatchMesh embedded = embed(opened_.rim, result_.flat, options, progress_);
   result_.times.embedding += seconds_since(start);
+  triangles_ = embedded.triangle_count();
   std::string first_defect;
   for (int relaxations = 0;; ++relaxations) {
     std::string defect;
     Patch patch = as_patch(embedded);
-    const std::vector<Index> tangled = tangled_triangles(patch, defect);
+    std::vector<Index> tangled = tangled_triangles(patch, defect);
     if (defect.empty()) {
       result_.patch = std::move(patch);
       relaxed_ = relaxations > 0;
       return {};
     }
     if (first_defect.empty()) first_defect = defect;
-    if (tangled.empty() || relaxations == most_relaxations) return first_defect;
+    // The flaps follow the embedded triangles; they stay as they are, and what meets them moves.
+    tangled.erase(std::lower_bound(tangled.begin(), tangled.end(), embedded.triangle_count()), tangled.end());
+    if (tangled.empty() || tangled.size() > most_tangled || relaxations == most_relaxations) return first_defect;
     start = Clock::now();
-    relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
+    if (relaxations < plain_relaxations)
+      relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
+    else
+      untangle(embedded, tangled, context_.neighbourhood, obstacles_, untangling_rounds, progress_);
     result_.times.embedding += seconds_since(start);
   }
 }
 
 std::string HoleFiller::route(const Try& plan, int count) const {
   std::string route = unfolding_name(unfolding_.outcome);
+  if (pinched_) route = "opened where the rim touches itself, " + route;
   if (plan.stretched) route += " and stretched";
   route += std::string(", ") + name(plan.energy);
   if (plan.resolution > 1) route += ", finer";
@@ -177,14 +207,17 @@ std::string HoleFiller::route(const Try& plan, int count) const {
 }
 
 FilledHole HoleFiller::fill() {
-  std::optional<bool> unfolded;  // with or without stretching, what `result_.flat` holds
+  std::optional<std::pair<bool, double>> unfolded;  // stretched, flap height: what `result_.flat` belongs to
   int count = 0;
-  for (const Try& plan : tries(context_.options)) {
+  for (const Try& plan : tries(context_.options, pinched_)) {
     progress_.check();
-    if (unfolded != plan.stretched) {
-      if (!unfold_rim(plan.stretched)) break;
-      unfolded = plan.stretched;
+    if (plan.resolution > 1 && triangles_ > most_triangles_to_refine) continue;
+    if (unfolded != std::pair(plan.stretched, plan.flap_height)) {
+      unfolded = {plan.stretched, plan.flap_height};
+      result_.flat.clear();
+      if (!unfold_rim(plan)) continue;
     }
+    if (result_.flat.empty()) continue;
     ++count;
     std::string defect;
     try {

@@ -175,12 +175,10 @@ Vector3 vector_area(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   return area;
 }
 
-bool closes_on_itself(const TriangleMesh& mesh, const BoundaryLoop& loop) {
-  std::vector<std::tuple<double, double, double>> positions;
-  for (Index v : loop.vertices)
-    positions.emplace_back(mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z());
-  std::sort(positions.begin(), positions.end());
-  return std::adjacent_find(positions.begin(), positions.end()) != positions.end();
+bool has_edge_without_length(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+  for (std::size_t i = 0; i < loop.vertices.size(); ++i)
+    if (mesh.vertices[loop.vertices[i]] == mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]]) return true;
+  return false;
 }
 
 bool on_one_line(const TriangleMesh& mesh, const BoundaryLoop& loop) {
@@ -258,9 +256,8 @@ std::string describe(LoopDefect defect) {
       return "this is the rim of a single triangle, not a hole; a patch would cover the triangle a second time";
     case LoopDefect::open_sheet:
       return "this is the outer rim of an open, nearly flat sheet, not a hole; a patch would cover the sheet a second time";
-    case LoopDefect::touches_itself:
-      return "two vertices of this rim lie at the same position; apply 'Merge Close Vertices' first if the surface is "
-             "meant to be joined there";
+    case LoopDefect::edge_without_length:
+      return "two neighbouring vertices of this rim lie at the same position; apply 'Merge Close Vertices' first";
     case LoopDefect::degenerate_rim: return "all vertices of this rim lie on one straight line";
   }
   return "";
@@ -290,8 +287,8 @@ std::vector<BoundaryLoop> trace_boundary_loops(const TriangleMesh& mesh, const M
   for (std::size_t i = 0; i < loops.size(); ++i) {
     BoundaryLoop& loop = loops[i];
     if (loop.defect != LoopDefect::none) continue;
-    if (closes_on_itself(mesh, loop))
-      loop.defect = LoopDefect::touches_itself;
+    if (has_edge_without_length(mesh, loop))
+      loop.defect = LoopDefect::edge_without_length;
     else if (on_one_line(mesh, loop))
       loop.defect = LoopDefect::degenerate_rim;
     else

@@ -17,7 +17,7 @@ enum class LoopDefect {
   inconsistent_normals,   ///< the faces along the loop do not agree which side is the front
   isolated_triangle,      ///< the rim of a single triangle
   open_sheet,             ///< the outer rim of a nearly flat sheet: a patch would cover the sheet a second time
-  touches_itself,         ///< two vertices of the loop lie at the same position: the rim closes on itself there
+  edge_without_length,    ///< two neighbouring vertices of the loop lie at the same position
   degenerate_rim,         ///< all vertices of the loop lie on one line
 };
 

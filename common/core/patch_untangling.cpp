@@ -1,0 +1,184 @@
+#include "common/core/patch_untangling.h"
+
+#include "common/core/patch.h"
+#include "common/core/triangle_intersection.h"
+
+#include <algorithm>
+
+namespace meshcomplete {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+// Distances of the places that are tried, in mean edge lengths at the vertex: near ones first, so that a small disturbance
+// wins over a large one.
+constexpr std::array<double, 5> distances = {0.1, 0.2, 0.4, 0.7, 1.0};
+
+// What a degenerate triangle counts: more than any likely number of meetings.
+constexpr std::size_t degenerate_cost = 1000;
+
+// The 26 directions from the centre of a cube to its faces, edges and corners.
+std::vector<Vector3> directions() {
+  std::vector<Vector3> list;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x || y || z) list.push_back(Vector3(x, y, z).normalized());
+  return list;
+}
+
+struct Box {
+  Vector3 low, high;
+  explicit Box(const Corners& c) : low(c[0].cwiseMin(c[1]).cwiseMin(c[2])), high(c[0].cwiseMax(c[1]).cwiseMax(c[2])) {}
+  bool meets(const Box& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+class Untangler {
+ public:
+  Untangler(PatchMesh& patch, const InputNeighbourhood& input, const std::vector<Corners>& obstacles)
+      : patch_(patch), input_(input), obstacles_(obstacles), directions_(directions()) {
+    for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
+      patch.move(v, as_stored(patch.position(v)));
+  }
+
+  std::vector<Index> movable_vertices(const std::vector<Index>& tangled);
+  bool improve(Index vertex);
+
+ private:
+  Corners corners(Index triangle) const {
+    const Triangle& t = patch_.triangles()[triangle];
+    return {patch_.position(t[0]), patch_.position(t[1]), patch_.position(t[2])};
+  }
+  double mean_edge(Index vertex) const;
+  void collect_nearby(Index vertex, double reach);
+  std::size_t cost(std::size_t give_up_at) const;
+
+  PatchMesh& patch_;
+  const InputNeighbourhood& input_;
+  const std::vector<Corners>& obstacles_;
+  const std::vector<Vector3> directions_;
+  std::vector<Index> star_;       // triangles of the vertex at hand
+  std::vector<Corners> nearby_;   // other triangles of the patch, and obstacles, that the star can reach
+};
+
+// The inner vertices of the tangled triangles; a triangle of rim vertices only gets one.
+std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled) {
+  std::vector<Index> vertices;
+  for (Index t : tangled) {
+    bool any = false;
+    for (Index v : patch_.triangles()[t])
+      if (!patch_.on_rim(v)) {
+        vertices.push_back(v);
+        any = true;
+      }
+    for (Index h = 3 * t; h < 3 * t + 3 && !any; ++h) {
+      if (patch_.is_boundary(h)) continue;
+      const Vector3 middle = 0.5 * (patch_.position(patch_.origin(h)) + patch_.position(patch_.target(h)));
+      vertices.push_back(patch_.split(h, as_stored(middle)));
+      any = true;
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+double Untangler::mean_edge(Index vertex) const {
+  double sum = 0;
+  int count = 0;
+  patch_.for_neighbours(vertex, [&](Index v) {
+    sum += (patch_.position(v) - patch_.position(vertex)).norm();
+    ++count;
+  });
+  return sum / count;
+}
+
+void Untangler::collect_nearby(Index vertex, double reach) {
+  star_.clear();
+  nearby_.clear();
+  patch_.for_outgoing(vertex, [&](Index h) { star_.push_back(h / 3); });
+  Box box(corners(star_.front()));
+  for (Index t : star_) {
+    const Box other(corners(t));
+    box.low = box.low.cwiseMin(other.low);
+    box.high = box.high.cwiseMax(other.high);
+  }
+  box.low = box.low.cwiseMin(patch_.position(vertex) - Vector3::Constant(reach));
+  box.high = box.high.cwiseMax(patch_.position(vertex) + Vector3::Constant(reach));
+  for (Index t = 0; t < patch_.triangle_count(); ++t) {
+    if (!patch_.alive(t) || std::find(star_.begin(), star_.end(), t) != star_.end()) continue;
+    const Corners c = corners(t);
+    if (box.meets(Box(c)) && !collinear(c[0], c[1], c[2])) nearby_.push_back(c);
+  }
+  for (const Corners& c : obstacles_)
+    if (box.meets(Box(c))) nearby_.push_back(c);
+}
+
+// How many triangles the star meets, its vertex being where it is now; `give_up_at` when at least that many.
+std::size_t Untangler::cost(std::size_t give_up_at) const {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < star_.size(); ++i) {
+    const Corners c = corners(star_[i]);
+    if (collinear(c[0], c[1], c[2])) {
+      sum += degenerate_cost;
+    } else {
+      const Box box(c);
+      for (const Corners& other : nearby_)
+        if (box.meets(Box(other)) && meet_improperly(c, other)) ++sum;
+      for (std::size_t j = 0; j < i; ++j) {
+        const Corners other = corners(star_[j]);
+        if (!collinear(other[0], other[1], other[2]) && meet_improperly(c, other)) ++sum;
+      }
+      sum += input_triangles_met(input_, c).size();
+    }
+    if (sum >= give_up_at) return give_up_at;
+  }
+  return sum;
+}
+
+// Tries places round the vertex and keeps the best; false when the vertex stays.
+bool Untangler::improve(Index vertex) {
+  const double edge = mean_edge(vertex);
+  if (!(edge > 0)) return false;
+  collect_nearby(vertex, edge * distances.back());
+  const Vector3 start = patch_.position(vertex);
+  Vector3 best = start;
+  std::size_t least = cost(10 * degenerate_cost);
+  for (double distance : distances) {
+    for (const Vector3& direction : directions_) {
+      if (least == 0) break;
+      const Vector3 place = as_stored(start + distance * edge * direction);
+      patch_.move(vertex, place);
+      const std::size_t now = cost(least);
+      if (now < least) {
+        least = now;
+        best = place;
+      }
+    }
+  }
+  patch_.move(vertex, best);
+  return best != start;
+}
+
+}  // namespace
+
+std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const InputNeighbourhood& input,
+                     const std::vector<Corners>& obstacles, int rounds, const Progress& progress) {
+  Untangler untangler(patch, input, obstacles);
+  const std::vector<Index> vertices = untangler.movable_vertices(tangled);
+  std::size_t moved = 0;
+  for (int round = 0; round < rounds; ++round) {
+    std::size_t now = 0;
+    for (Index v : vertices) {
+      now += untangler.improve(v);
+      progress.check();
+    }
+    moved += now;
+    if (now == 0) break;
+  }
+  return moved;
+}
+
+}  // namespace meshcomplete

@@ -1,0 +1,24 @@
+// Guarded moves: taking the vertices of a patch, one by one, to places where their triangles meet nothing.
+#pragma once
+
+#include "common/core/mesh.h"
+#include "common/core/patch_check.h"
+#include "common/core/patch_mesh.h"
+#include "common/core/progress.h"
+
+#include <array>
+#include <vector>
+
+namespace meshcomplete {
+
+/// Where triangles of a patch meet each other, the input or `obstacles`, moves the inner vertices near them to nearby
+/// places where fewer do, by exact tests, until none is left or nothing improves. `tangled` are the numbers of the
+/// triangles that meet something. Triangles without an inner vertex get one by splitting an inner edge. All inner vertices
+/// are rounded to what will be stored first, so that the tests speak about the final positions. The vertices far
+/// from the tangle stay where they are. Returns the number of vertices that moved.
+/// Cost: O(patch) for every vertex at the tangle, times the `rounds` used.
+std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const InputNeighbourhood& input,
+                     const std::vector<std::array<Vector3, 3>>& obstacles, int rounds,
+                     const Progress& progress = Progress());
+
+}  // namespace meshcomplete
