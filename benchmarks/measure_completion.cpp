@@ -240,9 +240,10 @@ class Comparison {
     for (const BoundaryLoop& loop : trace_boundary_loops(input_, build_topology(input_))) {
       bool is_closed = true, is_clean = true;
       for (std::size_t i = 0; i < loop.faces.size(); ++i) {
-        const Index a = input_places_[loop.vertices[i]];
-        const Index b = input_places_[loop.vertices[(i + 1) % loop.vertices.size()]];
-        const auto edge = edges.find(edge_key(a, b));
+        const Index next = loop.vertices[(i + 1) % loop.vertices.size()];
+        const Triangle& face = input_.triangles[loop.faces[i]];
+        if (std::count(face.begin(), face.end(), next) == 0) continue;  // behind the end of an open chain
+        const auto edge = edges.find(edge_key(input_places_[loop.vertices[i]], input_places_[next]));
         is_closed &= edge != edges.end() && !edge->second.open;
         is_clean &= edge != edges.end() && edge->second.clean;
       }

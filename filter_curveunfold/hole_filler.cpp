@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -22,12 +23,13 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // A tangled patch is first relaxed, each time over one more ring and with enough sweeps for a few rings to settle on the
-// membrane; then vertices are moved one by one. A patch with more tangled triangles than this is not worth it.
+// membrane; then vertices are moved one by one, as long as that helps. Patches with more tangled triangles are not worth it.
 constexpr int plain_relaxations = 2;
 constexpr int most_relaxations = 8;
 constexpr int relaxation_sweeps = 10;
 constexpr int untangling_rounds = 3;
-constexpr std::size_t most_tangled = 300;
+constexpr std::size_t most_to_relax = 300;
+constexpr std::size_t most_to_untangle = 60;
 
 // A patch of more triangles is not tried again at twice the resolution: its trouble is its shape.
 constexpr std::size_t most_triangles_to_refine = 5000;
@@ -173,6 +175,8 @@ std::string HoleFiller::attempt(const Try& plan) {
   result_.times.embedding += seconds_since(start);
   triangles_ = embedded.triangle_count();
   std::string first_defect;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  int stalled = 0;
   for (int relaxations = 0;; ++relaxations) {
     std::string defect;
     Patch patch = as_patch(embedded);
@@ -185,9 +189,14 @@ std::string HoleFiller::attempt(const Try& plan) {
     if (first_defect.empty()) first_defect = defect;
     // The flaps follow the embedded triangles; they stay as they are, and what meets them moves.
     tangled.erase(std::lower_bound(tangled.begin(), tangled.end(), embedded.triangle_count()), tangled.end());
-    if (tangled.empty() || tangled.size() > most_tangled || relaxations == most_relaxations) return first_defect;
+    const bool plain = relaxations < plain_relaxations;
+    if (tangled.empty() || tangled.size() > (plain ? most_to_relax : most_to_untangle)) return first_defect;
+    // An untangling that brings nothing once may still open the way for the next one, but not twice.
+    stalled = relaxations > plain_relaxations && tangled.size() >= fewest ? stalled + 1 : 0;
+    fewest = std::min(fewest, tangled.size());
+    if (stalled == 2 || relaxations == most_relaxations) return first_defect;
     start = Clock::now();
-    if (relaxations < plain_relaxations)
+    if (plain)
       relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
     else
       untangle(embedded, tangled, context_.neighbourhood, obstacles_, untangling_rounds, progress_);

@@ -83,6 +83,29 @@ Index PatchMesh::split(Index h, const Vector3& position) {
   return m;
 }
 
+// a b c keeps its number and becomes a b m; b c m and c a m are new.
+Index PatchMesh::insert(Index triangle, const Vector3& position) {
+  const auto [a, b, c] = triangles_[triangle];
+  const Index first = 3 * triangle;
+  const Index second = static_cast<Index>(3 * triangles_.size()), third = second + 3;
+  const Index m = static_cast<Index>(positions_.size());
+  const Index beyond_bc = opposite_[first + 1], beyond_ca = opposite_[first + 2];
+  positions_.push_back(position);
+  triangles_[triangle] = {a, b, m};
+  triangles_.push_back({b, c, m});
+  triangles_.push_back({c, a, m});
+  opposite_.resize(opposite_.size() + 6, none);
+  join(second, beyond_bc);
+  join(third, beyond_ca);
+  join(first + 1, second + 2);
+  join(second + 1, third + 2);
+  join(third + 1, first + 2);
+  half_edge_of_.push_back(first + 2);
+  if (half_edge_of_[b] == first + 1) half_edge_of_[b] = second;
+  if (half_edge_of_[c] == first + 2) half_edge_of_[c] = third;
+  return m;
+}
+
 // a b c, b a d  become  c d b, d c a.
 void PatchMesh::flip(Index h) {
   const Index g = opposite_[h];

@@ -75,6 +75,8 @@ class PatchMesh {
 
   /// Inserts a vertex on an inner edge, splitting its two triangles; returns the new vertex.
   Index split(Index half_edge, const Vector3& position);
+  /// Inserts a vertex into a triangle, splitting it into three; returns the new vertex.
+  Index insert(Index triangle, const Vector3& position);
   /// Replaces an inner edge by the other diagonal. The caller has made sure that the other diagonal is not an edge yet.
   void flip(Index half_edge);
   /// Whether removing the edge by moving its origin, not on the rim, onto its target leaves a manifold (link condition).

@@ -30,6 +30,14 @@ std::vector<Vector3> directions() {
 struct Box {
   Vector3 low, high;
   explicit Box(const Corners& c) : low(c[0].cwiseMin(c[1]).cwiseMin(c[2])), high(c[0].cwiseMax(c[1]).cwiseMax(c[2])) {}
+  void extend(const Box& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+  void widen(double margin) {
+    low -= Vector3::Constant(margin);
+    high += Vector3::Constant(margin);
+  }
   bool meets(const Box& other) const {
     return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
   }
@@ -38,7 +46,12 @@ struct Box {
 class Untangler {
  public:
   Untangler(PatchMesh& patch, const InputNeighbourhood& input, const std::vector<Corners>& obstacles)
-      : patch_(patch), input_(input), obstacles_(obstacles), directions_(directions()) {
+      : patch_(patch), input_(input), directions_(directions()) {
+    Box all(corners(0));
+    for (Index t = 0; t < patch.triangle_count(); ++t) all.extend(Box(corners(t)));
+    all.widen((all.high - all.low).maxCoeff());
+    for (const Corners& c : obstacles)
+      if (all.meets(Box(c))) obstacles_.push_back(c);
     for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
       patch.move(v, as_stored(patch.position(v)));
   }
@@ -57,7 +70,7 @@ class Untangler {
 
   PatchMesh& patch_;
   const InputNeighbourhood& input_;
-  const std::vector<Corners>& obstacles_;
+  std::vector<Corners> obstacles_;  // those that the patch could reach
   const std::vector<Vector3> directions_;
   std::vector<Index> star_;       // triangles of the vertex at hand
   std::vector<Corners> nearby_;   // other triangles of the patch, and obstacles, that the star can reach
@@ -78,6 +91,10 @@ std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled
       const Vector3 middle = 0.5 * (patch_.position(patch_.origin(h)) + patch_.position(patch_.target(h)));
       vertices.push_back(patch_.split(h, as_stored(middle)));
       any = true;
+    }
+    if (!any) {
+      const Corners c = corners(t);
+      vertices.push_back(patch_.insert(t, as_stored((c[0] + c[1] + c[2]) / 3.0)));
     }
   }
   std::sort(vertices.begin(), vertices.end());
@@ -100,13 +117,8 @@ void Untangler::collect_nearby(Index vertex, double reach) {
   nearby_.clear();
   patch_.for_outgoing(vertex, [&](Index h) { star_.push_back(h / 3); });
   Box box(corners(star_.front()));
-  for (Index t : star_) {
-    const Box other(corners(t));
-    box.low = box.low.cwiseMin(other.low);
-    box.high = box.high.cwiseMax(other.high);
-  }
-  box.low = box.low.cwiseMin(patch_.position(vertex) - Vector3::Constant(reach));
-  box.high = box.high.cwiseMax(patch_.position(vertex) + Vector3::Constant(reach));
+  for (Index t : star_) box.extend(Box(corners(t)));
+  box.widen(reach);
   for (Index t = 0; t < patch_.triangle_count(); ++t) {
     if (!patch_.alive(t) || std::find(star_.begin(), star_.end(), t) != star_.end()) continue;
     const Corners c = corners(t);

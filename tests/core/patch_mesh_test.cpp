@@ -72,7 +72,10 @@ TEST(PatchMesh, RandomEditsKeepTheDiskConsistent) {
     for (int step = 0; step < 400; ++step) {
       const Index h = random() % static_cast<Index>(3 * mesh.triangle_count());
       if (!mesh.alive(h / 3) || mesh.is_boundary(h)) continue;
-      switch (random() % 3) {
+      switch (random() % 4) {
+        case 3:
+          if (random() % 4 == 0) mesh.insert(h / 3, mesh.area_normal(h / 3));
+          break;
         case 0:
           mesh.split(h, 0.5 * (mesh.position(mesh.origin(h)) + mesh.position(mesh.target(h))));
           ++splits;

@@ -1,0 +1,310 @@
+// What must hold for every mesh: the input is left alone, patches are sound, and the answer does not depend on where the
+// mesh lies, how its elements are numbered or how many threads there are.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <random>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "common/core/error.h"
+#include "common/core/patch_check.h"
+#include "common/core/triangle_intersection.h"
+#include "filter_curveunfold/curve_unfolding.h"
+#include "tests/support/loop_families.h"
+#include "tests/support/meshes.h"
+#include "tests/support/patches.h"
+
+namespace meshcomplete {
+namespace {
+
+using test::loops_of;
+using test::with_patch;
+
+// --- the families
+// --------------------------------------------------------------------------------------------------
+
+/// A mesh with something that a filter can trip over.
+struct Family {
+  const char* name;
+  std::function<TriangleMesh()> make;
+  std::size_t closed;  ///< how many of its boundary loops get a patch
+};
+
+void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
+
+/// A rim that winds twice round its axis before it closes: no plane shows it as a simple polygon.
+TriangleMesh wound_collar() {
+  std::vector<Vector3> rim, outer;
+  for (const Vector3& p : testing::wound_rim(48, 2)) rim.push_back(as_stored(p));
+  for (const Vector3& p : rim) outer.push_back(as_stored(p + Vector3(0, 0, -0.02)));
+  return test::collar(rim, outer);
+}
+
+TriangleMesh two_components() {
+  return test::join(test::sphere_with_holes(3, 2),
+                    test::translated(test::sphere_with_hole(2), Vector3(2.5, 0, 0)));
+}
+
+TriangleMesh noisy_rim() { return test::without_ball(test::rough_sphere(3, 0.1, 3), Vector3(0, 0, 1), 0.6); }
+
+TriangleMesh torus_with_hole() { return test::without_ball(test::torus(24, 12), Vector3(1.4, 0, 0), 0.4); }
+
+const std::vector<Family>& families() {
+  static const std::vector<Family> list = {
+      {"closed", [] { return test::icosphere(2); }, 0},
+      {"one_hole", [] { return test::sphere_with_hole(3, 0.5); }, 1},
+      {"six_holes", [] { return test::sphere_with_holes(6, 3, 0.3); }, 6},
+      {"torus_with_hole", torus_with_hole, 1},
+      {"cylinder", [] { return test::open_cylinder(24, 8); }, 2},
+      {"island", [] { return test::sphere_with_island(3); }, 2},
+      {"two_components", two_components, 4},
+      {"noisy_rim", noisy_rim, 1},
+      {"wound_collar", wound_collar, 2},
+      {"touching_holes", [] { return test::sphere_with_touching_holes(); }, 2},
+      {"ragged_holes", [] { return test::rough_sphere_with_ragged_holes(3, 4, 7); }, 4},
+      {"rough_sheet", [] { return test::rough_sheet(14, 14, 0.3, 3, 5); }, 3},
+      {"flat_grid", [] { return test::flat_grid(4, 3); }, 0},
+      {"fin", [] { return test::sphere_with_hole_and_fin(); }, 1},
+      {"book", [] { return test::book(); }, 0},
+      {"moebius_strip", [] { return test::moebius_strip(); }, 0},
+      {"isolated_triangle", [] { return test::isolated_triangle(); }, 0},
+      {"unwelded", [] { return test::unwelded(test::sphere_with_hole(1)); }, 0},
+      {"far_from_origin", [] { return test::translated(test::sphere_with_hole(), Vector3(1000, -500, 200)); }, 1},
+      {"no_faces", [] { return TriangleMesh{{Vector3(1, 2, 3)}, {}}; }, 0},
+      {"nothing", [] { return TriangleMesh(); }, 0},
+  };
+  return list;
+}
+
+// --- what is compared
+// ----------------------------------------------------------------------------------------------
+
+CurveUnfoldingResult fill(const TriangleMesh& mesh, const CurveUnfoldingOptions& options = CurveUnfoldingOptions(),
+                          const Progress& progress = Progress()) {
+  return fill_by_curve_unfolding(mesh, MeshSelection(), options, progress);
+}
+
+std::size_t closed_holes(const CurveUnfoldingResult& result) {
+  return result.completion.report.count(HoleOutcome::closed);
+}
+
+bool same(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.vertices == b.vertices && a.triangles == b.triangles;
+}
+
+/// What became of each hole, whatever the order: edges, outcome, reason.
+using Fate = std::tuple<std::size_t, HoleOutcome, std::string>;
+std::vector<Fate> fates(const CurveUnfoldingResult& result) {
+  std::vector<Fate> list;
+  for (const HoleReport& hole : result.completion.report.holes)
+    list.emplace_back(hole.edges, hole.outcome, hole.reason);
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+/// How far apart two patches with the same triangles are; infinite when the triangles differ.
+double distance(const Patch& a, const Patch& b) {
+  if (a.triangles != b.triangles || a.vertices.size() != b.vertices.size())
+    return std::numeric_limits<double>::infinity();
+  double greatest = 0;
+  for (std::size_t i = 0; i < a.vertices.size(); ++i)
+    greatest = std::max(greatest, (a.vertices[i] - b.vertices[i]).norm());
+  return greatest;
+}
+
+TriangleMesh transformed(TriangleMesh mesh, const std::function<Vector3(const Vector3&)>& map) {
+  for (Vector3& p : mesh.vertices) p = map(p);
+  return mesh;
+}
+
+/// Coordinates rounded to multiples of 2^-12, so that moving the mesh by whole numbers up to 2000 is exact.
+TriangleMesh on_coarse_grid(const TriangleMesh& mesh) {
+  return transformed(mesh, [](const Vector3& p) { return Vector3((p * 4096).array().round() / 4096); });
+}
+
+class CompletionProperty : public ::testing::TestWithParam<Family> {};
+
+INSTANTIATE_TEST_SUITE_P(Families, CompletionProperty, ::testing::ValuesIn(families()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// --- the result
+// ----------------------------------------------------------------------------------------------------
+
+TEST_P(CompletionProperty, PatchIsSoundAndInputIsLeftAlone) {
+  const TriangleMesh mesh = GetParam().make();
+  const TriangleMesh before = mesh;
+  const CurveUnfoldingResult result = fill(mesh);
+  EXPECT_TRUE(same(mesh, before));
+  EXPECT_EQ(closed_holes(result), GetParam().closed);
+
+  // The loops with their holes closed: the report is in their order.
+  const std::vector<BoundaryLoop> loops = loops_of(mesh);
+  const std::vector<HoleReport>& holes = result.completion.report.holes;
+  ASSERT_EQ(holes.size(), loops.size());
+  std::vector<const BoundaryLoop*> rims;
+  std::size_t vertices = 0, faces = 0;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    EXPECT_EQ(holes[i].edges, loops[i].faces.size());
+    EXPECT_EQ(holes[i].reason.empty(), holes[i].outcome == HoleOutcome::closed) << holes[i].reason;
+    EXPECT_EQ(holes[i].faces_added > 0, holes[i].outcome == HoleOutcome::closed);
+    if (holes[i].outcome == HoleOutcome::closed) rims.push_back(&loops[i]);
+    vertices += holes[i].vertices_added;
+    faces += holes[i].faces_added;
+  }
+  const Patch& patch = result.completion.patch;
+  EXPECT_EQ(patch.input_vertices, mesh.vertices.size());
+  EXPECT_EQ(patch.vertices.size(), vertices);
+  EXPECT_EQ(patch.triangles.size(), faces);
+  for (const Vector3& p : patch.vertices) EXPECT_EQ(p, as_stored(p));
+
+  if (patch.empty()) return;
+  const PatchCheck check = check_patch(InputNeighbourhood(mesh), patch, rims);
+  EXPECT_TRUE(check.passed()) << describe(check.defect);
+  // Counted anew, without the check: no pair of faces meets that did not meet before.
+  EXPECT_EQ(count_improper_pairs(test::corners_of(with_patch(mesh, patch))),
+            count_improper_pairs(test::corners_of(mesh)));
+}
+
+TEST_P(CompletionProperty, SecondRunFindsNothingToDo) {
+  const TriangleMesh mesh = GetParam().make();
+  const CurveUnfoldingResult first = fill(mesh);
+  const CurveUnfoldingResult second = fill(with_patch(mesh, first.completion.patch));
+  EXPECT_TRUE(second.completion.patch.empty());
+  std::vector<Fate> open = fates(first);
+  open.erase(std::remove_if(open.begin(), open.end(),
+                            [](const Fate& fate) { return std::get<1>(fate) == HoleOutcome::closed; }),
+             open.end());
+  EXPECT_EQ(fates(second), open);
+}
+
+// --- what must not matter
+// ------------------------------------------------------------------------------------------
+
+TEST_P(CompletionProperty, ThreadsDoNotMatter) {
+  const TriangleMesh mesh = GetParam().make();
+  const auto with_threads = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return fill(mesh);
+  };
+  const CurveUnfoldingResult one = with_threads(1), two = with_threads(2);
+  EXPECT_EQ(distance(one.completion.patch, two.completion.patch), 0);
+  EXPECT_EQ(fates(one), fates(two));
+}
+
+TEST_P(CompletionProperty, ScalingByPowersOfTwoIsExact) {
+  const TriangleMesh mesh = GetParam().make();
+  const CurveUnfoldingResult plain = fill(mesh);
+  for (const double factor : {0x1p-12, 0x1p10}) {
+    CurveUnfoldingResult scaled = fill(test::scaled(mesh, factor));
+    for (Vector3& p : scaled.completion.patch.vertices) p /= factor;
+    EXPECT_EQ(distance(plain.completion.patch, scaled.completion.patch), 0) << factor;
+    EXPECT_EQ(fates(plain), fates(scaled)) << factor;
+  }
+}
+
+TEST_P(CompletionProperty, MovingAndTurningKeepsEveryFate) {
+  const TriangleMesh mesh = on_coarse_grid(GetParam().make());
+  const CurveUnfoldingResult plain = fill(mesh);
+  const std::vector<std::function<Vector3(const Vector3&)>> motions = {
+      [](const Vector3& p) { return Vector3(p + Vector3(17, -5, 3)); },
+      [](const Vector3& p) { return Vector3(p + Vector3(-1024, 512, 0)); },
+      [](const Vector3& p) { return Vector3(-p.y(), p.x(), p.z()); },
+      [](const Vector3& p) { return Vector3(p.x(), -p.z(), p.y()); },
+  };
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const CurveUnfoldingResult moved = fill(transformed(mesh, motions[i]));
+    EXPECT_EQ(fates(plain), fates(moved)) << "motion " << i;
+    Patch expected = plain.completion.patch;
+    for (Vector3& p : expected.vertices) p = motions[i](p);
+    std::printf("motion %zu: %zu %zu faces, distance %g\n", i, expected.triangles.size(),
+                moved.completion.patch.triangles.size(), distance(expected, moved.completion.patch));
+  }
+}
+
+TEST_P(CompletionProperty, NumberingDoesNotMatter) {
+  const TriangleMesh mesh = GetParam().make();
+  const CurveUnfoldingResult plain = fill(mesh);
+  for (const std::uint32_t seed : {1u, 2u}) EXPECT_EQ(fates(plain), fates(fill(test::shuffled(mesh, seed)))) << seed;
+}
+
+// --- cancelling
+// ----------------------------------------------------------------------------------------------------
+
+TEST_P(CompletionProperty, CancellingThrowsAndLeavesNothingBehind) {
+  const TriangleMesh mesh = GetParam().make();
+  const TriangleMesh before = mesh;
+  const CurveUnfoldingResult whole = fill(mesh);
+  int calls = 0;
+  fill(mesh, CurveUnfoldingOptions(), Progress([&](double, const std::string&) { return ++calls, true; }));
+  ASSERT_GE(calls, 1);
+  std::mt19937 random(11);
+  for (int round = 0; round < 3; ++round) {
+    const int last = round == 0 ? 1 : 1 + static_cast<int>(random() % static_cast<unsigned>(calls));
+    int count = 0;
+    bool asked = false, thrown = false;
+    try {
+      fill(mesh, CurveUnfoldingOptions(), Progress([&](double, const std::string&) {
+             asked = ++count >= last;  // how often the receiver is called depends on the clock
+             return !asked;
+           }));
+    } catch (const Cancelled&) {
+      thrown = true;
+    }
+    EXPECT_EQ(thrown, asked) << "call " << last << " of " << calls;
+    EXPECT_LE(count, last);
+    EXPECT_TRUE(same(mesh, before));
+  }
+  EXPECT_EQ(distance(fill(mesh).completion.patch, whole.completion.patch), 0);
+}
+
+// --- options
+// -------------------------------------------------------------------------------------------------------
+
+TEST(CompletionOptions, OutOfRangeIsRefusedWithAMessage) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::pair<const char*, std::function<void(CurveUnfoldingOptions&)>>> wrong = {
+      {"edge length 0", [](auto& o) { o.edge_length = 0; }},
+      {"edge length negative", [](auto& o) { o.edge_length = -1; }},
+      {"edge length not a number", [=](auto& o) { o.edge_length = nan; }},
+      {"edge length infinite", [=](auto& o) { o.edge_length = infinity; }},
+      {"no restarts", [](auto& o) { o.unfolding.restarts = 0; }},
+      {"too many restarts", [](auto& o) { o.unfolding.restarts = 10001; }},
+      {"least distance 0", [](auto& o) { o.unfolding.min_distance = 0; }},
+      {"least distance too large", [](auto& o) { o.unfolding.min_distance = 0.1; }},
+      {"least distance not a number", [=](auto& o) { o.unfolding.min_distance = nan; }},
+      {"cooling 0", [](auto& o) { o.unfolding.cooling = 0; }},
+      {"cooling 1", [](auto& o) { o.unfolding.cooling = 1; }},
+      {"cooling not a number", [=](auto& o) { o.unfolding.cooling = nan; }},
+      {"temperature 0", [](auto& o) { o.unfolding.start_temperature = 0; }},
+      {"temperature not a number", [=](auto& o) { o.unfolding.start_temperature = nan; }},
+      {"temperature infinite", [=](auto& o) { o.unfolding.start_temperature = infinity; }},
+      {"two edges", [](auto& o) { o.holes.max_edges = 2; }},
+      {"perimeter 0", [](auto& o) { o.holes.max_perimeter = 0; }},
+      {"perimeter not a number", [=](auto& o) { o.holes.max_perimeter = nan; }},
+      {"selected, with nothing selected", [](auto& o) { o.holes.selected_only = true; }},
+  };
+  const TriangleMesh mesh = test::sphere_with_hole(1);
+  for (const auto& [what, spoil] : wrong) {
+    CurveUnfoldingOptions options;
+    spoil(options);
+    try {
+      fill(mesh, options);
+      ADD_FAILURE() << what << " was taken";
+    } catch (const CompletionError& error) {
+      EXPECT_FALSE(std::string(error.what()).empty()) << what;
+      EXPECT_FALSE(error.stage().empty()) << what;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meshcomplete
