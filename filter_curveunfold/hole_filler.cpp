@@ -28,8 +28,10 @@ constexpr int plain_relaxations = 2;
 constexpr int most_relaxations = 8;
 constexpr int relaxation_sweeps = 10;
 constexpr int untangling_rounds = 3;
+// The bounds are per patch, but for the last one, which is for all tries of a hole together.
 constexpr std::size_t most_to_relax = 300;
 constexpr std::size_t most_to_untangle = 60;
+constexpr int most_untanglings = 16;
 
 // A patch of more triangles is not tried again at twice the resolution: its trouble is its shape.
 constexpr std::size_t most_triangles_to_refine = 5000;
@@ -104,6 +106,7 @@ class HoleFiller {
   Unfolding unfolding_;
   FilledHole result_;
   bool relaxed_ = false;
+  int untanglings_ = 0;
   std::size_t triangles_ = 0;  // of the last embedded patch
 };
 
@@ -194,12 +197,13 @@ std::string HoleFiller::attempt(const Try& plan) {
     // An untangling that brings nothing once may still open the way for the next one, but not twice.
     stalled = relaxations > plain_relaxations && tangled.size() >= fewest ? stalled + 1 : 0;
     fewest = std::min(fewest, tangled.size());
-    if (stalled == 2 || relaxations == most_relaxations) return first_defect;
+    if (stalled == 2 || relaxations == most_relaxations || (!plain && ++untanglings_ > most_untanglings))
+      return first_defect;
     start = Clock::now();
     if (plain)
       relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
     else
-      untangle(embedded, tangled, context_.neighbourhood, obstacles_, untangling_rounds, progress_);
+      untangle(embedded, tangled, context_.neighbourhood, obstacles_, stalled, untangling_rounds, progress_);
     result_.times.embedding += seconds_since(start);
   }
 }

@@ -55,16 +55,11 @@ def vector(text):
 
 
 def read_off(path):
-    """Vertices and triangles of an OFF file without comments, as the runner writes it."""
-    words = iter(pathlib.Path(path).read_text().split())
-    next(words)
-    vertex_count, face_count = int(next(words)), int(next(words))
-    next(words)
-    vertices = [(float(next(words)), float(next(words)), float(next(words))) for _ in range(vertex_count)]
-    faces = []
-    for _ in range(face_count):
-        corners = int(next(words))
-        faces.append(tuple(int(next(words)) for _ in range(corners)))
+    """Vertices and triangles of an OFF file as the runner writes it: one element a line, whatever stands behind it."""
+    lines = pathlib.Path(path).read_text().split("\n")
+    vertex_count, face_count = (int(word) for word in lines[1].split()[:2])
+    vertices = [tuple(float(word) for word in line.split()[:3]) for line in lines[2 : 2 + vertex_count]]
+    faces = [tuple(int(word) for word in line.split()[1:4]) for line in lines[2 + vertex_count :][:face_count]]
     return vertices, faces
 
 

@@ -56,7 +56,7 @@ class Untangler {
       patch.move(v, as_stored(patch.position(v)));
   }
 
-  std::vector<Index> movable_vertices(const std::vector<Index>& tangled);
+  std::vector<Index> movable_vertices(const std::vector<Index>& tangled, int rings);
   bool improve(Index vertex);
 
  private:
@@ -77,7 +77,7 @@ class Untangler {
 };
 
 // The inner vertices of the tangled triangles; a triangle of rim vertices only gets one.
-std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled) {
+std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled, int rings) {
   std::vector<Index> vertices;
   for (Index t : tangled) {
     bool any = false;
@@ -96,6 +96,13 @@ std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled
       const Corners c = corners(t);
       vertices.push_back(patch_.insert(t, as_stored((c[0] + c[1] + c[2]) / 3.0)));
     }
+  }
+  for (int ring = 0; ring < rings; ++ring) {
+    const std::vector<Index> reached = vertices;
+    for (Index v : reached)
+      patch_.for_neighbours(v, [&](Index neighbour) {
+        if (!patch_.on_rim(neighbour)) vertices.push_back(neighbour);
+      });
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -177,9 +184,9 @@ bool Untangler::improve(Index vertex) {
 }  // namespace
 
 std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const InputNeighbourhood& input,
-                     const std::vector<Corners>& obstacles, int rounds, const Progress& progress) {
+                     const std::vector<Corners>& obstacles, int rings, int rounds, const Progress& progress) {
   Untangler untangler(patch, input, obstacles);
-  const std::vector<Index> vertices = untangler.movable_vertices(tangled);
+  const std::vector<Index> vertices = untangler.movable_vertices(tangled, rings);
   std::size_t moved = 0;
   for (int round = 0; round < rounds; ++round) {
     std::size_t now = 0;

@@ -18,7 +18,7 @@ namespace meshcomplete {
 /// from the tangle stay where they are. Returns the number of vertices that moved.
 /// Cost: O(patch) for every vertex at the tangle, times the `rounds` used.
 std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const InputNeighbourhood& input,
-                     const std::vector<std::array<Vector3, 3>>& obstacles, int rounds,
+                     const std::vector<std::array<Vector3, 3>>& obstacles, int rings, int rounds,
                      const Progress& progress = Progress());
 
 }  // namespace meshcomplete
