@@ -13,6 +13,10 @@ namespace {
 constexpr int solves = 2;
 constexpr int rounds_between = 2;
 
+// From this many vertices on a single solve has to do: the second one costs most of the time there, and the triangles
+// near the rim, which it improves, are few.
+constexpr std::size_t vertices_for_one_solve = 20000;
+
 std::vector<double> target_lengths(const Rim& rim, const EmbeddingOptions& options) {
   std::vector<double> target = rim.edge_length;
   if (options.edge_length) std::fill(target.begin(), target.end(), *options.edge_length);
@@ -58,7 +62,8 @@ PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const Embeddi
     // The embedded flat triangulation is creased along its chords; the membrane with uniform weights, which cannot fold
     // more than its rim, is a safe start for everything that looks at angles.
     solve(patch, rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
-    for (int i = 0; i < solves; ++i) {
+    const int count = patch.vertex_count() < vertices_for_one_solve ? solves : 1;
+    for (int i = 0; i < count; ++i) {
       remesh(patch, target, remeshing, progress);
       solve(patch, rim, options.energy, options.weights, progress.part(0.4 * i + 0.2, 0.4 * i + 0.6, ""));
     }

@@ -1,0 +1,200 @@
+#include "common/core/patch_untangling.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/core/error.h"
+#include "common/core/patch.h"
+#include "common/core/patch_remeshing.h"
+#include "common/core/triangle_intersection.h"
+#include "tests/support/meshes.h"
+#include "tests/support/patches.h"
+
+namespace meshcomplete {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+/// A box of the given depth without a lid, 8 by 8 squares wide, and a flat lid with an edge length of about one.
+class PatchUntangling : public ::testing::Test {
+ protected:
+  explicit PatchUntangling(double depth = 0.5) : mesh_(box(depth)), input_(mesh_), patch_(lid()) {}
+
+  static TriangleMesh box(double depth) {
+    const TriangleMesh grid = test::flat_grid(8, 8);
+    TriangleMesh mesh = grid;
+    for (Vector3& p : mesh.vertices) p.z() = -depth;
+    const BoundaryLoop rim = test::loops_of(grid)[0];
+    std::vector<Vector3> low, high;
+    for (Index v : rim.vertices) {
+      low.push_back(mesh.vertices[v]);
+      high.push_back(grid.vertices[v]);
+    }
+    // The walls, welded to the bottom.
+    const Index first = static_cast<Index>(mesh.vertices.size()), n = static_cast<Index>(rim.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), high.begin(), high.end());
+    for (Index i = 0; i < n; ++i) {
+      const Index j = (i + 1) % n;
+      mesh.triangles.push_back({rim.vertices[i], rim.vertices[j], first + j});
+      mesh.triangles.push_back({rim.vertices[i], first + j, first + i});
+    }
+    return mesh;
+  }
+
+  PatchMesh lid() {
+    loops_ = test::loops_of(mesh_);
+    std::vector<Vector3> rim;
+    for (Index v : loops_.at(0).vertices) rim.push_back(mesh_.vertices[v]);
+    // A fan at the centre, so that no triangle is flat.
+    std::vector<Vector3> positions = rim;
+    positions.emplace_back(4.01, 3.98, 0);
+    std::vector<Triangle> triangles;
+    const Index n = static_cast<Index>(rim.size());
+    for (Index i = 0; i < n; ++i) triangles.push_back({i, (i + 1) % n, n});
+    PatchMesh patch(positions, rim.size(), triangles);
+    std::vector<double> target(positions.size(), 1.0);
+    refine(patch, target, {});
+    remesh(patch, target, {});
+    return patch;
+  }
+
+  Index vertex_near(const Vector3& place) const {
+    Index best = static_cast<Index>(patch_.rim_size());
+    for (Index v = best; v < patch_.vertex_count(); ++v)
+      if ((patch_.position(v) - place).norm() < (patch_.position(best) - place).norm()) best = v;
+    return best;
+  }
+
+  PatchCheck check() const {
+    const Index rim = static_cast<Index>(patch_.rim_size());
+    Patch patch;
+    patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
+    for (Index v = rim; v < patch_.vertex_count(); ++v) patch.vertices.push_back(as_stored(patch_.position(v)));
+    for (Triangle t : patch_.triangles()) {
+      for (Index& v : t) v = v < rim ? loops_[0].vertices[v] : patch.input_vertices + v - rim;
+      patch.triangles.push_back(t);
+    }
+    return check_patch(input_, patch, test::pointers(loops_));
+  }
+
+  std::vector<Corners> patch_corners() const {
+    std::vector<Corners> list;
+    for (const Triangle& t : patch_.triangles())
+      list.push_back({patch_.position(t[0]), patch_.position(t[1]), patch_.position(t[2])});
+    return list;
+  }
+
+  /// Expects that the tangle is found, taken apart, and nothing but what is near `at` moves.
+  void expect_untangled(PatchDefect defect, const Vector3& at, double reach) {
+    const PatchCheck tangled = check();
+    ASSERT_EQ(tangled.defect, defect);
+    const std::vector<Vector3> before = patch_.positions();
+    std::vector<Index> triangles = tangled.patch_triangles;
+    std::size_t moved = 0;
+    for (int i = 0; i < 5 && !triangles.empty(); ++i) {
+      moved += untangle(patch_, triangles, input_, {}, 3);
+      triangles = check().patch_triangles;
+    }
+    EXPECT_TRUE(check().passed()) << describe(check().defect);
+    EXPECT_GT(moved, 0u);
+    for (Index v = 0; v < before.size(); ++v) {
+      if (patch_.on_rim(v)) EXPECT_EQ(patch_.position(v), before[v]);
+      if ((before[v] - at).norm() > reach) EXPECT_EQ(patch_.position(v), as_stored(before[v]));
+      EXPECT_EQ(patch_.position(v), as_stored(patch_.position(v))) << "what will be stored";
+    }
+  }
+
+  TriangleMesh mesh_;
+  std::vector<BoundaryLoop> loops_;
+  InputNeighbourhood input_;
+  PatchMesh patch_;
+};
+
+TEST_F(PatchUntangling, TheLidIsCleanAtFirst) {
+  EXPECT_TRUE(check().passed()) << describe(check().defect);
+  EXPECT_EQ(untangle(patch_, {}, input_, {}, 3), 0u);
+}
+
+TEST_F(PatchUntangling, AVertexThroughTheInput) {
+  const Index poked = vertex_near(Vector3(4, 4, 0));
+  const Vector3 at = patch_.position(poked);
+  patch_.move(poked, at - Vector3(0, 0, 0.8));
+  expect_untangled(PatchDefect::meets_input, at, 2.5);
+}
+
+TEST_F(PatchUntangling, AVertexThroughAnotherTriangle) {
+  // Over the heads of its neighbours, down again and through the patch there.
+  const Index poked = vertex_near(Vector3(3, 3, 0));
+  const Vector3 at = patch_.position(poked);
+  patch_.move(poked, at + Vector3(1.7, 0.2, -0.3));
+  std::vector<Vector3> neighbours;
+  expect_untangled(PatchDefect::meets_itself, at, 4.5);
+}
+
+TEST_F(PatchUntangling, AFoldInThePlane) {
+  const Index poked = vertex_near(Vector3(5, 3, 0));
+  Index neighbour = poked;
+  patch_.for_neighbours(poked, [&](Index v) {
+    if (!patch_.on_rim(v)) neighbour = v;
+  });
+  ASSERT_NE(neighbour, poked);
+  const Vector3 at = patch_.position(poked);
+  patch_.move(poked, at + 1.4 * (patch_.position(neighbour) - at));
+  expect_untangled(PatchDefect::meets_itself, at, 4.5);
+}
+
+// A spike from below, through the middle of the lid.
+TEST_F(PatchUntangling, ObstaclesAreKeptClearOf) {
+  const Vector3 place = patch_.position(vertex_near(Vector3(4, 4, 0)));
+  const std::vector<Corners> spike = {
+      {place + Vector3(0.05, 0.02, 0.2), place + Vector3(0.1, 0.03, -0.3), place + Vector3(0.05, 0.1, -0.3)}};
+  const auto tangled = [&] {
+    std::vector<Index> list;
+    for (const auto& [mine, other] : improper_pairs_between(patch_corners(), spike)) list.push_back(mine);
+    return list;
+  };
+  ASSERT_FALSE(tangled().empty());
+  for (int i = 0; i < 5 && !tangled().empty(); ++i) untangle(patch_, tangled(), input_, spike, 3);
+  EXPECT_TRUE(tangled().empty());
+  EXPECT_TRUE(check().passed());
+}
+
+// Two triangles on a rim of four have nothing to move: they get a vertex.
+TEST(PatchUntanglingOnARim, TrianglesWithoutAnInnerVertexGetOne) {
+  const std::vector<Vector3> rim = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
+  PatchMesh patch(rim, 4, {{0, 1, 2}, {0, 2, 3}});
+  const TriangleMesh nothing;
+  const std::vector<Corners> spike = {{Vector3(2, 1.5, 0.3), Vector3(2.1, 1.5, -1), Vector3(1.9, 1.6, -1)}};
+  const InputNeighbourhood input(nothing);
+  const std::size_t moved = untangle(patch, {0}, input, spike, 5);
+  EXPECT_EQ(patch.vertex_count(), 5u);
+  EXPECT_GT(moved, 0u);
+  std::vector<Corners> triangles;
+  for (const Triangle& t : patch.triangles())
+    triangles.push_back({patch.position(t[0]), patch.position(t[1]), patch.position(t[2])});
+  EXPECT_TRUE(improper_pairs_between(triangles, spike).empty());
+  EXPECT_TRUE(improper_pairs(triangles).empty());
+  for (Index v = 0; v < 4; ++v) EXPECT_EQ(patch.position(v), rim[v]);
+}
+
+TEST_F(PatchUntangling, NoRoundsOnlyRound) {
+  const Index poked = vertex_near(Vector3(4, 4, 0));
+  patch_.move(poked, patch_.position(poked) - Vector3(0, 0, 0.8));
+  const std::vector<Vector3> before = patch_.positions();
+  EXPECT_EQ(untangle(patch_, check().patch_triangles, input_, {}, 0), 0u);
+  for (Index v = 0; v < before.size(); ++v) EXPECT_EQ(patch_.position(v), as_stored(before[v]));
+}
+
+TEST_F(PatchUntangling, CanBeCancelled) {
+  const Index poked = vertex_near(Vector3(4, 4, 0));
+  patch_.move(poked, patch_.position(poked) - Vector3(0, 0, 0.8));
+  EXPECT_THROW(untangle(patch_, check().patch_triangles, input_, {}, 3,
+                        Progress([](double, const std::string&) { return false; })),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace meshcomplete

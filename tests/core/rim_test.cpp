@@ -1,0 +1,140 @@
+#include "common/core/rim.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "tests/support/meshes.h"
+#include "tests/support/patches.h"
+
+namespace meshcomplete {
+namespace {
+
+using test::loops_of;
+
+Rim rim_of(const TriangleMesh& mesh, const BoundaryLoop& loop) {
+  return collect_rim(mesh, build_topology(mesh), loop);
+}
+
+using Positions = std::array<double, 3>;
+Positions key(const Vector3& p) { return {p.x(), p.y(), p.z()}; }
+
+/// The corners of a face by position, the smallest first, in their cyclic order.
+std::array<Positions, 3> face_key(const TriangleMesh& mesh, const Triangle& t) {
+  std::array<Positions, 3> corners = {key(mesh.vertices[t[0]]), key(mesh.vertices[t[1]]),
+                                      key(mesh.vertices[t[2]])};
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+/// Compares with all faces that have a corner on the loop; right for loops without pinched vertices.
+void expect_one_ring(const TriangleMesh& mesh, const BoundaryLoop& loop, const Rim& rim) {
+  const std::set<Index> on_loop(loop.vertices.begin(), loop.vertices.end());
+  std::multiset<std::array<Positions, 3>> expected, found;
+  std::set<std::pair<Index, Index>> chords;
+  for (const Triangle& t : mesh.triangles) {
+    if (std::none_of(t.begin(), t.end(), [&](Index v) { return on_loop.count(v) != 0; })) continue;
+    expected.insert(face_key(mesh, t));
+    for (int k = 0; k < 3; ++k) {
+      const auto place = [&](Index v) {
+        return static_cast<std::size_t>(std::find(loop.vertices.begin(), loop.vertices.end(), v) -
+                                        loop.vertices.begin());
+      };
+      const std::size_t n = loop.vertices.size(), a = place(t[k]), b = place(t[(k + 1) % 3]);
+      if (a < n && b < n && (a + 1) % n != b && (b + 1) % n != a)
+        chords.emplace(std::min(a, b), std::max(a, b));
+    }
+  }
+  for (const Triangle& t : rim.ring.triangles) found.insert(face_key(rim.ring, t));
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(std::vector<std::pair<Index, Index>>(chords.begin(), chords.end()), rim.forbidden);
+}
+
+TEST(Rim, TheRingIsEveryFaceAtTheLoop) {
+  for (const TriangleMesh& mesh :
+       {test::sphere_with_hole(), test::sphere_with_holes(6, 3, 0.3), test::open_cylinder(7, 1),
+        test::shuffled(test::sphere_with_island(), 2), test::sphere_with_hole(1, 1.2)})
+    for (const BoundaryLoop& loop : loops_of(mesh)) {
+      const Rim rim = rim_of(mesh, loop);
+      ASSERT_EQ(rim.positions.size(), loop.vertices.size());
+      ASSERT_EQ(rim.edge_length.size(), loop.vertices.size());
+      for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+        EXPECT_EQ(rim.positions[i], mesh.vertices[loop.vertices[i]]);
+        EXPECT_EQ(rim.ring.vertices[i], rim.positions[i]) << "the ring's first vertices are the loop's";
+      }
+      expect_one_ring(mesh, loop, rim);
+    }
+}
+
+TEST(Rim, TheRingLooksAtBothFansOfATouchingVertex) {
+  const TriangleMesh mesh = test::sphere_with_touching_holes();
+  for (const BoundaryLoop& loop : loops_of(mesh)) expect_one_ring(mesh, loop, rim_of(mesh, loop));
+}
+
+TEST(Rim, TheRingEndsAtAnotherSheetThroughTheSameVertex) {
+  // Two tetrahedra that share a vertex: the hole in one of them does not see the other.
+  TriangleMesh mesh = test::pinched_tetrahedra();
+  mesh.triangles.erase(mesh.triangles.begin());
+  const std::vector<BoundaryLoop> loops = loops_of(mesh);
+  ASSERT_EQ(loops.size(), 1u);
+  EXPECT_EQ(rim_of(mesh, loops[0]).ring.triangles.size(), 3u);
+}
+
+// Without two of its faces a tetrahedron has a rim of four vertices, two of them joined by an edge.
+TEST(Rim, ChordsOfTheInputAreForbidden) {
+  TriangleMesh mesh = test::tetrahedron();
+  mesh.triangles.resize(2);
+  const std::vector<BoundaryLoop> loops = loops_of(mesh);
+  ASSERT_EQ(loops[0].vertices.size(), 4u);
+  std::vector<Index> shared;
+  for (Index v : mesh.triangles[0])
+    if (std::count(mesh.triangles[1].begin(), mesh.triangles[1].end(), v)) shared.push_back(v);
+  ASSERT_EQ(shared.size(), 2u);
+  const Rim rim = rim_of(mesh, loops[0]);
+  ASSERT_EQ(rim.forbidden.size(), 1u);
+  const auto [a, b] = rim.forbidden[0];
+  EXPECT_LT(a, b);
+  EXPECT_EQ((std::set<Index>{loops[0].vertices[a], loops[0].vertices[b]}),
+            (std::set<Index>(shared.begin(), shared.end())));
+}
+
+TEST(Rim, EdgeLengthsAreThoseOfTheRing) {
+  const TriangleMesh mesh = test::rough_sphere_with_ragged_holes(3, 1, 4);
+  for (const BoundaryLoop& loop : loops_of(mesh)) {
+    if (loop.defect != LoopDefect::none) continue;
+    const Rim rim = rim_of(mesh, loop);
+    double least = 1e300, greatest = 0;
+    for (const Triangle& t : rim.ring.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const double length = (rim.ring.vertices[t[k]] - rim.ring.vertices[t[(k + 1) % 3]]).norm();
+        least = std::min(least, length);
+        greatest = std::max(greatest, length);
+      }
+    for (double length : rim.edge_length) {
+      EXPECT_GE(length, least);
+      EXPECT_LE(length, greatest);
+    }
+    const Rim doubled = rim_of(test::scaled(mesh, 2), loop);
+    for (std::size_t i = 0; i < rim.edge_length.size(); ++i)
+      EXPECT_DOUBLE_EQ(doubled.edge_length[i], 2 * rim.edge_length[i]);
+  }
+}
+
+// A tube whose one end is meshed three times as finely round the rim: the lengths follow the rim's own side.
+TEST(Rim, EdgeLengthsFollowTheMeshAlongTheRim) {
+  std::vector<Vector3> rim, outer;
+  for (int i = 0; i <= 40; ++i) rim.emplace_back(0.25 * i, 0, 0);       // fine
+  for (int i = 0; i < 10; ++i) rim.emplace_back(10, 2.0 + i, 0);        // coarse
+  for (int i = 0; i < 10; ++i) rim.emplace_back(9.0 - i, 11, 0);
+  for (int i = 0; i < 10; ++i) rim.emplace_back(0, 10.0 - i, 0);
+  for (const Vector3& p : rim) outer.push_back(p - Vector3(0, 0, 0.5));
+  const TriangleMesh mesh = test::collar(rim, outer);
+  const Rim collected = rim_of(mesh, loops_of(mesh)[0]);
+  EXPECT_LT(collected.edge_length[20], 0.5);
+  EXPECT_GT(collected.edge_length[55], 0.8);
+}
+
+}  // namespace
+}  // namespace meshcomplete
