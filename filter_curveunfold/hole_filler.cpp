@@ -220,6 +220,14 @@ std::string HoleFiller::route(const Try& plan, int count) const {
 }
 
 FilledHole HoleFiller::fill() {
+  const std::size_t obstructed = obstructed_edges(context_.neighbourhood, loop_).size();
+  if (obstructed > 0) {
+    result_.reason = "other faces of the mesh pass through " + std::to_string(obstructed) +
+                     (obstructed == 1 ? " edge" : " edges") +
+                     " of this rim, so that every patch would meet them; apply 'Select Self Intersecting Faces' and delete "
+                     "them first";
+    return std::move(result_);
+  }
   std::optional<std::pair<bool, double>> unfolded;  // stretched, flap height: what `result_.flat` belongs to
   int count = 0;
   for (const Try& plan : tries(context_.options, pinched_)) {

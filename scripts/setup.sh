@@ -2,7 +2,7 @@
 # Makes a Debian machine ready to build: installs the packages that are missing and unpacks MeshLab's headers, which
 # Debian packages only as source. What is done already is skipped. The machine's apt configuration is left alone.
 #
-# Usage: scripts/setup.sh build|test     what the packages are needed for
+# Usage: scripts/setup.sh build|test|benchmark     what the packages are needed for; each needs those before it
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -13,10 +13,8 @@ build_packages=(
   g++ cmake ninja-build ccache meshlab qtbase5-dev libqt5opengl5-dev libeigen3-dev libglew-dev libgl-dev libcgal-dev
   libtbb-dev dpkg-dev ca-certificates xz-utils
 )
-test_packages=(
-  libgtest-dev libgmock-dev libbenchmark-dev python3 xvfb xauth libgl1-mesa-dri xdotool openbox imagemagick x11-utils
-  f3d time util-linux
-)
+test_packages=(libgtest-dev libgmock-dev python3 xvfb xauth libgl1-mesa-dri xdotool openbox imagemagick)
+benchmark_packages=(libbenchmark-dev f3d time)
 
 installed() {
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
@@ -73,7 +71,8 @@ fetch_meshlab_headers() {
 case ${1:-build} in
   build) packages=("${build_packages[@]}") ;;
   test) packages=("${build_packages[@]}" "${test_packages[@]}") ;;
-  *) fail "Usage: scripts/setup.sh build|test" ;;
+  benchmark) packages=("${build_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}") ;;
+  *) usage_error "Usage: scripts/setup.sh build|test|benchmark" ;;
 esac
 command -v apt-get >/dev/null || fail "This set-up knows Debian only. Elsewhere: install the packages named in scripts/setup.sh, unpack MeshLab's source, and pass -DMESHLAB_SOURCE_DIR= to cmake."
 mkdir -p "$cache"

@@ -1,5 +1,7 @@
 #include "common/core/rim.h"
 
+#include "common/core/triangle_intersection.h"
+
 #include <algorithm>
 #include <unordered_map>
 
@@ -44,6 +46,25 @@ void smooth_cyclic(std::vector<double>& values) {
 }
 
 }  // namespace
+
+std::vector<Index> obstructed_edges(const InputNeighbourhood& input, const BoundaryLoop& loop) {
+  const TriangleMesh& mesh = input.mesh();
+  std::vector<Index> edges;
+  for (Index i = 0; i < loop.vertices.size(); ++i) {
+    const Vector3& a = mesh.vertices[loop.vertices[i]];
+    const Vector3& b = mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]];
+    const auto passes = [&](Index triangle) {
+      const Triangle& t = mesh.triangles[triangle];
+      const std::array<Vector3, 3> corners = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+      for (const Vector3& corner : corners)
+        if (corner == a || corner == b) return false;
+      return !collinear(corners[0], corners[1], corners[2]) && segment_meets_triangle(a, b, corners);
+    };
+    const std::vector<Index> near = input.triangles_in_box(a.cwiseMin(b), a.cwiseMax(b));
+    if (std::any_of(near.begin(), near.end(), passes)) edges.push_back(i);
+  }
+  return edges;
+}
 
 Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop) {
   Rim rim;

@@ -4,6 +4,7 @@
 #include "common/core/boundary_loops.h"
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/patch_check.h"
 #include "common/core/patch_remeshing.h"
 
 #include <vector>
@@ -21,5 +22,10 @@ struct Rim {
 
 /// Cost: O(faces of the ring).
 Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop);
+
+/// The edges of the rim (positions of their first vertices in the loop) through which the input itself passes: triangles
+/// without a corner at the edge meet it. No patch can close such an edge without meeting those triangles. Exact.
+/// Cost: O(edges times (log faces + triangles nearby)).
+std::vector<Index> obstructed_edges(const InputNeighbourhood& input, const BoundaryLoop& loop);
 
 }  // namespace meshcomplete

@@ -249,6 +249,11 @@ bool collinear(const Vector3& a, const Vector3& b, const Vector3& c) {
   return CGAL::collinear(point(a), point(b), point(c));
 }
 
+bool segment_meets_triangle(const Vector3& a, const Vector3& b, const Corners& triangle) {
+  return CGAL::do_intersect(Kernel::Segment_3(point(a), point(b)),
+                            Kernel::Triangle_3(point(triangle[0]), point(triangle[1]), point(triangle[2])));
+}
+
 bool meet_improperly(const Corners& a, const Corners& b) {
   int in_a[3], in_b[3], shared = 0;
   for (int i = 0; i < 3; ++i)

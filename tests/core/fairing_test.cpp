@@ -104,7 +104,9 @@ TEST(Fairing, FixedVerticesAreKeptToTheBit) {
       EXPECT_EQ(c.surface.triangles, triangles);
       bool moved = false;
       for (std::size_t v = 0; v < before.size(); ++v) {
-        if (c.fixed[v]) EXPECT_EQ(c.surface.vertices[v], before[v]);
+        if (c.fixed[v]) {
+          EXPECT_EQ(c.surface.vertices[v], before[v]);
+        }
         moved |= c.surface.vertices[v] != before[v];
       }
       EXPECT_TRUE(moved);

@@ -49,7 +49,7 @@ void expect_one_ring(const TriangleMesh& mesh, const BoundaryLoop& loop, const R
   }
   for (const Triangle& t : rim.ring.triangles) found.insert(face_key(rim.ring, t));
   EXPECT_EQ(found, expected);
-  EXPECT_EQ(std::vector<std::pair<Index, Index>>(chords.begin(), chords.end()), rim.forbidden);
+  EXPECT_EQ(ForbiddenEdges(chords.begin(), chords.end()), rim.forbidden);
 }
 
 TEST(Rim, TheRingIsEveryFaceAtTheLoop) {
@@ -134,6 +134,35 @@ TEST(Rim, EdgeLengthsFollowTheMeshAlongTheRim) {
   const Rim collected = rim_of(mesh, loops_of(mesh)[0]);
   EXPECT_LT(collected.edge_length[20], 0.5);
   EXPECT_GT(collected.edge_length[55], 0.8);
+}
+
+// --- obstructed edges
+// --------------------------------------------------------------------------------------------------
+
+TEST(ObstructedEdges, NoneOnCleanMeshes) {
+  for (const TriangleMesh& mesh : {test::sphere_with_holes(6), test::sphere_with_touching_holes(),
+                                   test::sphere_with_island(), test::rough_sphere_with_ragged_holes(3, 3, 1)})
+    for (const BoundaryLoop& loop : loops_of(mesh))
+      EXPECT_TRUE(obstructed_edges(InputNeighbourhood(mesh), loop).empty());
+}
+
+TEST(ObstructedEdges, AFaceThroughAnEdgeIsFound) {
+  const TriangleMesh sphere = test::sphere_with_hole();
+  const BoundaryLoop loop = loops_of(sphere)[0];
+  const Index edge = 5;
+  const Vector3 a = sphere.vertices[loop.vertices[edge]], b = sphere.vertices[loop.vertices[edge + 1]];
+  const Vector3 across = Vector3(0, 0, 1), along = 0.1 * (b - a);
+  const Vector3 middle = 0.5 * (a + b);
+  TriangleMesh blade;
+  const Vector3 outwards = Vector3(middle.x(), middle.y(), 0).normalized();
+  blade.vertices = {middle + 0.3 * outwards + along, middle - 0.3 * outwards + 0.1 * across,
+                    middle - 0.3 * outwards - 0.1 * across};
+  blade.triangles = {{0, 1, 2}};
+  const TriangleMesh mesh = test::join(sphere, blade);
+  EXPECT_EQ(obstructed_edges(InputNeighbourhood(mesh), loop), std::vector<Index>{edge});
+  for (Vector3& p : blade.vertices) p += 3 * along;  // past the end of the edge, through none or the next one
+  const TriangleMesh beside = test::join(sphere, blade);
+  for (Index other : obstructed_edges(InputNeighbourhood(beside), loop)) EXPECT_NE(other, edge);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <random>
 #include <string>
@@ -35,7 +36,7 @@ using test::with_patch;
 struct Family {
   const char* name;
   std::function<TriangleMesh()> make;
-  std::size_t closed;  ///< how many of its boundary loops get a patch
+  std::optional<std::size_t> closed;  ///< how many of its boundary loops get a patch; absent: some, none, all
 };
 
 void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
@@ -46,6 +47,22 @@ TriangleMesh wound_collar() {
   for (const Vector3& p : testing::wound_rim(48, 2)) rim.push_back(as_stored(p));
   for (const Vector3& p : rim) outer.push_back(as_stored(p + Vector3(0, 0, -0.02)));
   return test::collar(rim, outer);
+}
+
+/// A rim that rises and falls three times.
+TriangleMesh wavy_collar() {
+  std::vector<Vector3> rim, outer;
+  for (const Vector3& p : testing::saddle(48, 3, 0.4)) rim.push_back(as_stored(p));
+  for (const Vector3& p : rim) outer.push_back(as_stored(Vector3(1.2 * p.x(), 1.2 * p.y(), p.z() - 0.2)));
+  return test::collar(rim, outer);
+}
+
+/// Two pairs of faces that touch at two vertices. The only patch for either of them joins these vertices, so that a patch
+/// for each would make an edge with four faces.
+TriangleMesh two_tents() {
+  return {{Vector3(-1, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 1), Vector3(0, 1, -1), Vector3(0, -1, 1),
+           Vector3(0, -1, -1)},
+          {{0, 2, 3}, {1, 3, 2}, {0, 5, 4}, {1, 4, 5}}};
 }
 
 TriangleMesh two_components() {
@@ -64,13 +81,15 @@ const std::vector<Family>& families() {
       {"six_holes", [] { return test::sphere_with_holes(6, 3, 0.3); }, 6},
       {"torus_with_hole", torus_with_hole, 1},
       {"cylinder", [] { return test::open_cylinder(24, 8); }, 2},
-      {"island", [] { return test::sphere_with_island(3); }, 2},
+      {"island", [] { return test::sphere_with_island(3); }, 1},
       {"two_components", two_components, 4},
       {"noisy_rim", noisy_rim, 1},
-      {"wound_collar", wound_collar, 2},
+      {"wavy_collar", wavy_collar, 2},
+      {"wound_collar", wound_collar, std::nullopt},
+      {"two_tents", two_tents, std::nullopt},
       {"touching_holes", [] { return test::sphere_with_touching_holes(); }, 2},
-      {"ragged_holes", [] { return test::rough_sphere_with_ragged_holes(3, 4, 7); }, 4},
-      {"rough_sheet", [] { return test::rough_sheet(14, 14, 0.3, 3, 5); }, 3},
+      {"ragged_holes", [] { return test::rough_sphere_with_ragged_holes(3, 4, 7); }, 3},
+      {"rough_sheet", [] { return test::rough_sheet(14, 14, 0.3, 3, 5); }, 2},
       {"flat_grid", [] { return test::flat_grid(4, 3); }, 0},
       {"fin", [] { return test::sphere_with_hole_and_fin(); }, 1},
       {"book", [] { return test::book(); }, 0},
@@ -94,6 +113,13 @@ CurveUnfoldingResult fill(const TriangleMesh& mesh, const CurveUnfoldingOptions&
 
 std::size_t closed_holes(const CurveUnfoldingResult& result) {
   return result.completion.report.count(HoleOutcome::closed);
+}
+
+std::string what_happened(const CurveUnfoldingResult& result) {
+  std::string text;
+  for (const HoleReport& hole : result.completion.report.holes)
+    text += std::to_string(hole.edges) + " edges: " + name(hole.outcome) + ", " + hole.route + hole.reason + "\n";
+  return text;
 }
 
 bool same(const TriangleMesh& a, const TriangleMesh& b) {
@@ -143,7 +169,7 @@ TEST_P(CompletionProperty, PatchIsSoundAndInputIsLeftAlone) {
   const TriangleMesh before = mesh;
   const CurveUnfoldingResult result = fill(mesh);
   EXPECT_TRUE(same(mesh, before));
-  EXPECT_EQ(closed_holes(result), GetParam().closed);
+  if (GetParam().closed) EXPECT_EQ(closed_holes(result), *GetParam().closed) << what_happened(result);
 
   // The loops with their holes closed: the report is in their order.
   const std::vector<BoundaryLoop> loops = loops_of(mesh);
@@ -210,22 +236,35 @@ TEST_P(CompletionProperty, ScalingByPowersOfTwoIsExact) {
   }
 }
 
-TEST_P(CompletionProperty, MovingAndTurningKeepsEveryFate) {
+TEST_P(CompletionProperty, MovingChangesNothingButTheRounding) {
   const TriangleMesh mesh = on_coarse_grid(GetParam().make());
   const CurveUnfoldingResult plain = fill(mesh);
-  const std::vector<std::function<Vector3(const Vector3&)>> motions = {
-      [](const Vector3& p) { return Vector3(p + Vector3(17, -5, 3)); },
-      [](const Vector3& p) { return Vector3(p + Vector3(-1024, 512, 0)); },
+  for (const Vector3& offset : {Vector3(17, -5, 3), Vector3(-1024, 512, 0)}) {
+    const CurveUnfoldingResult moved =
+        fill(transformed(mesh, [&](const Vector3& p) { return Vector3(p + offset); }));
+    EXPECT_EQ(fates(plain), fates(moved)) << offset.transpose();
+    Patch expected = plain.completion.patch;
+    for (Vector3& p : expected.vertices) p = as_stored(p + offset);
+    // The new place is rounded to floats, and so was the old one.
+    const double spacing = std::ldexp(1.0, std::ilogb(offset.cwiseAbs().maxCoeff() + 2) - 23);
+    EXPECT_LE(distance(expected, moved.completion.patch), 2 * spacing) << offset.transpose();
+  }
+}
+
+TEST_P(CompletionProperty, QuarterTurnsKeepEveryFate) {
+  const TriangleMesh mesh = GetParam().make();
+  const CurveUnfoldingResult plain = fill(mesh);
+  const std::vector<std::function<Vector3(const Vector3&)>> turns = {
       [](const Vector3& p) { return Vector3(-p.y(), p.x(), p.z()); },
       [](const Vector3& p) { return Vector3(p.x(), -p.z(), p.y()); },
+      [](const Vector3& p) { return Vector3(p.z(), p.y(), -p.x()); },
   };
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const CurveUnfoldingResult moved = fill(transformed(mesh, motions[i]));
-    EXPECT_EQ(fates(plain), fates(moved)) << "motion " << i;
-    Patch expected = plain.completion.patch;
-    for (Vector3& p : expected.vertices) p = motions[i](p);
-    std::printf("motion %zu: %zu %zu faces, distance %g\n", i, expected.triangles.size(),
-                moved.completion.patch.triangles.size(), distance(expected, moved.completion.patch));
+  for (const auto& turn : turns) {
+    const CurveUnfoldingResult turned = fill(transformed(mesh, turn));
+    EXPECT_EQ(fates(plain), fates(turned)) << what_happened(plain) << what_happened(turned);
+    // The sums are rounded differently, and ties (test meshes are symmetric) broken differently.
+    const double faces = static_cast<double>(plain.completion.patch.triangles.size());
+    EXPECT_NEAR(static_cast<double>(turned.completion.patch.triangles.size()), faces, 0.1 * faces + 4);
   }
 }
 
