@@ -250,7 +250,7 @@ std::string describe(LoopDefect defect) {
       return "edges shared by three or more faces end at this rim, so it is not clear where the hole goes on; apply "
              "'Select non Manifold Edges' and 'Delete Selected Faces' or 'Repair non Manifold Edges by removing faces' first";
     case LoopDefect::inconsistent_normals:
-      return "the faces round this rim do not agree which side is the front; apply 'Re-Orient all faces coherently' "
+      return "the faces round this rim do not agree which side is the front; apply 'Re-Orient all faces coherentely' "
              "first (a one-sided surface such as a Moebius strip cannot be closed)";
     case LoopDefect::isolated_triangle:
       return "this is the rim of a single triangle, not a hole; a patch would cover the triangle a second time";

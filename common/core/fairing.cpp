@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace meshcomplete {
 namespace {
@@ -24,8 +25,11 @@ constexpr double largest_cotangent = 19.0;
 // The least weight of an edge, relative to the cotangent weight 1/sqrt(3) of an equilateral mesh's edge: about 1 %.
 constexpr double smallest_weight = 0.006;
 
-// Rounds of turning normals and fitting the surface to them. The energy falls by less than a percent after these.
-constexpr int normal_rounds = 6;
+// The descent of the normal variation: its steps, the first one's longest move relative to the surface's diagonal, and how
+// often a step that does not lower the energy is halved. After these steps the energy falls by less than a percent a step.
+constexpr int descent_steps = 30;
+constexpr double first_move = 1e-3;
+constexpr int most_halvings = 12;
 
 double bounded_cotangent(const Vector3& u, const Vector3& v) {
   const double area = u.cross(v).norm();
@@ -151,7 +155,7 @@ void minimize_membrane(TriangleMesh& surface, const Numbering& numbering, Laplac
 
 // With one equation U^2 = 0 for every unknown the least sum of squares is zero, and these equations, multiplied by the
 // masses, are the rows L M^-1 L of the free vertices. The rows of the rim's vertices in the inner L bring in the ring.
-void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, LaplacianWeights weights) {
+void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, LaplacianWeights weights, Cholesky& solver) {
   const Laplacian laplacian = make_laplacian(surface, weights);
   const SparseMatrix inner = laplacian.matrix * numbering.pick_free;
   const SparseMatrix weighted = laplacian.mass.cwiseInverse().asDiagonal() * inner;
@@ -159,134 +163,117 @@ void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, Lapl
   Coordinates x = coordinates_of(surface);
   for (Index v : numbering.free_vertices) x.row(v).setZero();
   const Coordinates right = -(weighted.transpose() * (laplacian.matrix * x));
-  Cholesky solver;
   factorize(solver, system);
   set_free(surface, numbering, solver.solve(right));
 }
 
-// --- normals ---
-
-Vector3 unit_normal(const TriangleMesh& surface, const Triangle& t) {
-  const Vector3 n = (surface.vertices[t[1]] - surface.vertices[t[0]])
-                        .cross(surface.vertices[t[2]] - surface.vertices[t[0]]);
-  const double length = n.norm();
-  return length > 0 ? Vector3(n / length) : Vector3::Zero();
-}
-
-// Pairs of triangles that share an edge, with the edge's length.
+// Two triangles that share an edge, at least one of them with a free corner, and the edge's length.
 struct Hinge {
   Index left, right;
   double length;
 };
 
-std::vector<Hinge> find_hinges(const TriangleMesh& surface) {
+std::vector<Hinge> find_hinges(const TriangleMesh& surface, const std::vector<char>& fixed) {
   struct Side {
     Index low, high, triangle;
   };
   std::vector<Side> sides;
-  for (Index f = 0; f < surface.triangles.size(); ++f)
-    for (int k = 0; k < 3; ++k) {
-      const Index a = surface.triangles[f][k], b = surface.triangles[f][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), f});
-    }
+  std::vector<char> still;
+  for (Index f = 0; f < surface.triangles.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    still.push_back(fixed[t[0]] && fixed[t[1]] && fixed[t[2]]);
+    for (int k = 0; k < 3; ++k) sides.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3]), f});
+  }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
   std::vector<Hinge> hinges;
-  for (std::size_t i = 1; i < sides.size(); ++i)
-    if (sides[i].low == sides[i - 1].low && sides[i].high == sides[i - 1].high)
-      hinges.push_back({sides[i - 1].triangle, sides[i].triangle,
-                        (surface.vertices[sides[i].low] - surface.vertices[sides[i].high]).norm()});
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side &a = sides[i - 1], &b = sides[i];
+    if (a.low != b.low || a.high != b.high || (still[a.triangle] && still[b.triangle])) continue;
+    hinges.push_back({a.triangle, b.triangle, (surface.vertices[a.low] - surface.vertices[a.high]).norm()});
+  }
   return hinges;
 }
 
-// Normals of the triangles with a free corner that vary least across edges, given those of the others.
-Coordinates smoothest_normals(const TriangleMesh& surface, const std::vector<Hinge>& hinges,
-                              const std::vector<char>& fixed_triangle) {
-  const Numbering numbering(fixed_triangle);
-  Coordinates normals(static_cast<Eigen::Index>(surface.triangles.size()), 3);
-  for (std::size_t f = 0; f < surface.triangles.size(); ++f)
-    normals.row(static_cast<Eigen::Index>(f)) = unit_normal(surface, surface.triangles[f]).transpose();
-  Triplets triplets;
-  Coordinates right = Coordinates::Zero(static_cast<Eigen::Index>(numbering.free_vertices.size()), 3);
-  for (const Hinge& hinge : hinges) {
-    for (const auto& [here, there] : {std::pair(hinge.left, hinge.right), std::pair(hinge.right, hinge.left)}) {
-      const Eigen::Index i = numbering.unknown[here], j = numbering.unknown[there];
-      if (i < 0) continue;
-      triplets.emplace_back(i, i, hinge.length);
-      if (j >= 0)
-        triplets.emplace_back(i, j, -hinge.length);
-      else
-        right.row(i) += hinge.length * normals.row(there);
+// The sum over hinges of length times |n - n'|^2 / 2, and its gradient.
+class NormalVariation {
+ public:
+  NormalVariation(const TriangleMesh& surface, const std::vector<char>& fixed) : hinges_(find_hinges(surface, fixed)) {}
+
+  double value(const TriangleMesh& surface) {
+    update_normals(surface);
+    double sum = 0;
+    for (const Hinge& hinge : hinges_) sum += hinge.length * (1.0 - normals_[hinge.left].dot(normals_[hinge.right]));
+    return sum;
+  }
+
+  /// One row per vertex, at the positions of the last call of `value`. A normal N / |N| with N = a x b + b x c + c x a
+  /// answers to a shift of a by the part of (shift x (b - c)) / |N| across the normal.
+  Coordinates gradient(const TriangleMesh& surface) const {
+    std::vector<Vector3> by_normal(normals_.size(), Vector3::Zero());
+    for (const Hinge& hinge : hinges_) {
+      by_normal[hinge.left] -= hinge.length * normals_[hinge.right];
+      by_normal[hinge.right] -= hinge.length * normals_[hinge.left];
+    }
+    Coordinates gradient = Coordinates::Zero(static_cast<Eigen::Index>(surface.vertices.size()), 3);
+    for (std::size_t f = 0; f < normals_.size(); ++f) {
+      if (!(areas_[f] > 0)) continue;
+      const Vector3 across = (by_normal[f] - normals_[f] * normals_[f].dot(by_normal[f])) / areas_[f];
+      const Triangle& t = surface.triangles[f];
+      for (int k = 0; k < 3; ++k) {
+        const Vector3 side = surface.vertices[t[(k + 1) % 3]] - surface.vertices[t[(k + 2) % 3]];
+        gradient.row(t[k]) += side.cross(across).transpose();
+      }
+    }
+    return gradient;
+  }
+
+ private:
+  void update_normals(const TriangleMesh& surface) {
+    normals_.clear();
+    areas_.clear();
+    for (const Triangle& t : surface.triangles) {
+      const Vector3 n = (surface.vertices[t[1]] - surface.vertices[t[0]])
+                            .cross(surface.vertices[t[2]] - surface.vertices[t[0]]);
+      areas_.push_back(n.norm());
+      normals_.push_back(areas_.back() > 0 ? Vector3(n / areas_.back()) : Vector3::Zero());
     }
   }
-  const Eigen::Index n = static_cast<Eigen::Index>(numbering.free_vertices.size());
-  SparseMatrix system(n, n);
-  system.setFromTriplets(triplets.begin(), triplets.end());
-  Cholesky solver;
-  factorize(solver, system);
-  const Coordinates solution = solver.solve(right);
-  for (Eigen::Index i = 0; i < n; ++i)
-    normals.row(numbering.free_vertices[static_cast<std::size_t>(i)]) = solution.row(i).normalized();
-  return normals;
-}
 
-// The right-hand side of the Poisson problem whose solution has triangles turned onto the wanted normals.
-Coordinates turned_divergence(const TriangleMesh& surface, const Coordinates& wanted) {
-  Coordinates right = Coordinates::Zero(static_cast<Eigen::Index>(surface.vertices.size()), 3);
-  for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
-    const Triangle& t = surface.triangles[f];
-    const Vector3 now = unit_normal(surface, t);
-    const Vector3 goal = wanted.row(static_cast<Eigen::Index>(f)).transpose();
-    if (now.isZero() || goal.isZero()) continue;
-    const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(now, goal).toRotationMatrix();
-    for (int k = 0; k < 3; ++k) {
-      const Index i = t[k], j = t[(k + 1) % 3], o = t[(k + 2) % 3];
-      const double weight = 0.5 * bounded_cotangent(surface.vertices[i] - surface.vertices[o],
-                                                    surface.vertices[j] - surface.vertices[o]);
-      const Vector3 edge = turn * (surface.vertices[i] - surface.vertices[j]);
-      right.row(i) += std::max(weight, 0.5 * smallest_weight) * edge.transpose();
-      right.row(j) -= std::max(weight, 0.5 * smallest_weight) * edge.transpose();
-    }
-  }
-  return right;
-}
+  std::vector<Hinge> hinges_;
+  std::vector<Vector3> normals_;
+  std::vector<double> areas_;  // twice
+};
 
-SparseMatrix clamped_stiffness(const TriangleMesh& surface) {
-  const Eigen::Index n = static_cast<Eigen::Index>(surface.vertices.size());
-  Triplets triplets;
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const Index i = t[k], j = t[(k + 1) % 3], o = t[(k + 2) % 3];
-      const double weight = std::max(0.5 * bounded_cotangent(surface.vertices[i] - surface.vertices[o],
-                                                             surface.vertices[j] - surface.vertices[o]),
-                                     0.5 * smallest_weight);
-      triplets.emplace_back(i, i, weight);
-      triplets.emplace_back(j, j, weight);
-      triplets.emplace_back(i, j, -weight);
-      triplets.emplace_back(j, i, -weight);
-    }
-  SparseMatrix stiffness(n, n);
-  stiffness.setFromTriplets(triplets.begin(), triplets.end());
-  return stiffness;
-}
-
+// Gradient descent from the thin plate's minimum, in the thin plate's own metric, in which steps are smooth and few are
+// needed: the two energies agree to first order on a nearly flat patch.
 void minimize_normal_variation(TriangleMesh& surface, const std::vector<char>& fixed, const Numbering& numbering,
                                LaplacianWeights weights, const Progress& progress) {
-  minimize_thin_plate(surface, numbering, weights);
-  const std::vector<Hinge> hinges = find_hinges(surface);
-  std::vector<char> fixed_triangle;
-  for (const Triangle& t : surface.triangles) fixed_triangle.push_back(fixed[t[0]] && fixed[t[1]] && fixed[t[2]]);
-  for (int round = 0; round < normal_rounds; ++round) {
-    const Coordinates wanted = smoothest_normals(surface, hinges, fixed_triangle);
-    const SparseMatrix rows = numbering.pick_free.transpose() * clamped_stiffness(surface);
-    Coordinates x = coordinates_of(surface);
-    const Coordinates right = numbering.pick_free.transpose() * turned_divergence(surface, wanted);
-    for (Index v : numbering.free_vertices) x.row(v).setZero();
-    Cholesky solver;
-    factorize(solver, rows * numbering.pick_free);
-    set_free(surface, numbering, solver.solve(right - rows * x));
-    progress.update((round + 1.0) / normal_rounds);
+  Cholesky metric;
+  minimize_thin_plate(surface, numbering, weights, metric);
+  NormalVariation variation(surface, fixed);
+  double energy = variation.value(surface), step = 0;
+  for (int i = 0; i < descent_steps; ++i) {
+    const Coordinates direction = metric.solve(numbering.pick_free.transpose() * variation.gradient(surface));
+    const double longest = direction.rowwise().norm().maxCoeff();
+    if (!(longest > 0)) return;
+    if (i == 0) step = first_move / longest;
+    const TriangleMesh before = surface;
+    const Coordinates start = numbering.pick_free.transpose() * coordinates_of(surface);
+    double trial = energy;
+    for (int halvings = 0; halvings < most_halvings; ++halvings, step *= 0.5) {
+      set_free(surface, numbering, start - step * direction);
+      trial = variation.value(surface);
+      if (trial < energy) break;
+    }
+    if (!(trial < energy)) {
+      surface = before;
+      return;
+    }
+    energy = trial;
+    step *= 2;
+    progress.update((i + 1.0) / descent_steps);
   }
 }
 
@@ -316,7 +303,11 @@ void minimize_energy(TriangleMesh& surface, const std::vector<char>& fixed, Surf
   progress.check();
   switch (energy) {
     case SurfaceEnergy::membrane: minimize_membrane(surface, numbering, weights); break;
-    case SurfaceEnergy::thin_plate: minimize_thin_plate(surface, numbering, weights); break;
+    case SurfaceEnergy::thin_plate: {
+      Cholesky solver;
+      minimize_thin_plate(surface, numbering, weights, solver);
+      break;
+    }
     case SurfaceEnergy::normal_variation:
       minimize_normal_variation(surface, fixed, numbering, weights, progress);
       break;

@@ -1,5 +1,6 @@
 #include "common/host/close_holes.h"
 
+#include <QRegularExpression>
 #include <chrono>
 
 #include "common/host/append.h"
@@ -23,18 +24,23 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// "bunny.ply" becomes "bunny (closed)": MeshLab's list of layers shows a name only up to its first dot.
+QString derived_name(const QString& name, const QString& what) {
+  static const QRegularExpression extension("\\.[A-Za-z][A-Za-z0-9]{1,3}$");
+  return QString("%1 (%2)").arg(QString(name).remove(extension), what);
+}
+
 void append_result(FilterRun& run, MeshModel& model, const Snapshot& input, const ClosedHoles& result) {
   const Patch& patch = result.completion.patch;
   AppendOptions options;
   options.select_new_faces = run.parameters.boolean("NewFaceSelected");
   const QString name = model.label();
   if (run.parameters.boolean("AsNewLayer") && !patch.empty())
-    append_patch_to_copy(run.document, model, input.mesh, patch, name + " (closed)", options);
+    append_patch_to_copy(run.document, model, input.mesh, patch, derived_name(name, "closed"), options);
   else
     append_patch(model, input.mesh, patch, options);
   for (const ExtraLayer& layer : result.layers)
-    if (!layer.mesh.triangles.empty())
-      add_layer(run.document, layer.mesh, QString("%1 (%2)").arg(name, layer.suffix));
+    if (!layer.mesh.triangles.empty()) add_layer(run.document, layer.mesh, derived_name(name, layer.suffix));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class CloseHolesTest : public testing::Test {
   static void set(RichParameterList& list, const char* name, bool on) { list.setValue(name, BoolValue(on)); }
 
   MeshDocument document;
-  MeshModel& model = test::layer_from(document, test::sphere_with_holes(3), "ball");
+  MeshModel& model = test::layer_from(document, test::sphere_with_holes(3), "ball 1.5.ply");
   FakePlugin fan_plugin{{close_holes_filter(
       [](const TriangleMesh& mesh, const MeshSelection& selection, const HoleSelectionOptions& holes,
          const Progress&) { return fill_with_fans(mesh, selection, holes); })}};
@@ -125,7 +125,7 @@ TEST_F(CloseHolesTest, ResultAsNewLayer) {
   EXPECT_TRUE(test::layer_state(model) == before);
   ASSERT_EQ(document.meshList.size(), 2);
   EXPECT_EQ(document.mm(), document.meshList.at(1));
-  EXPECT_EQ(document.mm()->label(), "ball (closed)");
+  EXPECT_EQ(document.mm()->label(), "ball 1.5 (closed)");
 }
 
 TEST_F(CloseHolesTest, WhenNothingWasClosedThereIsNoNewLayer) {
@@ -146,7 +146,7 @@ TEST_F(CloseHolesTest, ExtraLayersAreAddedUnlessEmpty) {
   })});
   ASSERT_TRUE(plugin.run(document));
   ASSERT_EQ(document.meshList.size(), 2);
-  EXPECT_EQ(document.meshList.at(1)->label(), "ball (unfolded)");
+  EXPECT_EQ(document.meshList.at(1)->label(), "ball 1.5 (unfolded)");
   EXPECT_EQ(document.mm(), &model);
 }
 
