@@ -151,7 +151,7 @@ class Comparison {
       picture.triangles.push_back({first, first + 1, first + 2});
       for (const Vector3& corner : corners_[f]) {
         picture.vertices.push_back(corner);
-        colours.push_back(!new_[f] ? Colour{205, 205, 210} : bad_[f] ? Colour{215, 25, 28} : Colour{245, 150, 35});
+        colours.push_back(!new_[f] ? Colour{235, 236, 240} : bad_[f] ? Colour{240, 30, 30} : Colour{255, 180, 60});
       }
     }
     meshcomplete::benchmarks::write_ply(path, picture, colours);

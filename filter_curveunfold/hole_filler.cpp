@@ -31,7 +31,7 @@ constexpr int untangling_rounds = 3;
 // The bounds are per patch, but for the last one, which is for all tries of a hole together.
 constexpr std::size_t most_to_relax = 300;
 constexpr std::size_t most_to_untangle = 60;
-constexpr int most_untanglings = 16;
+constexpr int most_untanglings = 10;
 
 // A patch of more triangles is not tried again at twice the resolution: its trouble is its shape.
 constexpr std::size_t most_triangles_to_refine = 5000;
@@ -44,11 +44,17 @@ struct Try {
   double flap_height;  // of the flaps that open a pinched rim
 };
 
-SurfaceEnergy other_energy(SurfaceEnergy energy) {
-  return energy == SurfaceEnergy::membrane ? SurfaceEnergy::thin_plate : SurfaceEnergy::membrane;
+// What is asked for, then the others from stiff to soft: a membrane overshoots least.
+std::vector<SurfaceEnergy> energies(SurfaceEnergy asked) {
+  switch (asked) {
+    case SurfaceEnergy::normal_variation: return {asked, SurfaceEnergy::thin_plate, SurfaceEnergy::membrane};
+    case SurfaceEnergy::thin_plate: return {asked, SurfaceEnergy::membrane};
+    case SurfaceEnergy::membrane: return {asked, SurfaceEnergy::thin_plate};
+  }
+  return {asked};
 }
 
-// What is asked for; the other energy; more resolution; and all of them again with another unfolding. A pinched rim is opened
+// What is asked for; the other energies; more resolution; and all of them again with another unfolding. A pinched rim is opened
 // behind the surface first, where it shows least.
 std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   std::vector<Try> list;
@@ -56,7 +62,7 @@ std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   for (bool stretched : {false, true})
     for (double height : heights)
       for (double resolution : {1.0, 2.0})
-        for (SurfaceEnergy energy : {options.energy, other_energy(options.energy)})
+        for (SurfaceEnergy energy : energies(options.energy))
           list.push_back({stretched, energy, resolution, height});
   return list;
 }

@@ -19,11 +19,15 @@ constexpr double pi = 3.14159265358979323846;
 
 Kernel::Point_2 exact_point(const Vector2& p) { return {p.x(), p.y()}; }
 
-/// Whether the edges from b to a and from b to c have more than b in common.
-bool folds_back(const Vector2& a, const Vector2& b, const Vector2& c) {
-  const Kernel::Point_2 p = exact_point(a), q = exact_point(b), r = exact_point(c);
-  if (p == q || q == r) return true;
-  return CGAL::orientation(p, q, r) == CGAL::COLLINEAR && CGAL::angle(p, q, r) == CGAL::ACUTE;
+/// Whether the edges i < j of a closed polygon of n points have a common point in any case.
+bool are_neighbours(std::size_t i, std::size_t j, std::size_t n) {
+  return j == i + 1 || (i == 0 && j + 1 == n);
+}
+
+Loop in_space(const Polygon& polygon) {
+  Loop flat(polygon.size());
+  for (std::size_t i = 0; i < polygon.size(); ++i) flat[i] = Vector3(polygon[i].x(), polygon[i].y(), 0);
+  return flat;
 }
 
 Eigen::Matrix3d covariance(const Loop& loop) {
@@ -52,6 +56,16 @@ double projection_quality(const Loop& loop, const Vector3& normal, const Vector3
   const double greatest_area = area.norm();
   return projected / length + std::sqrt(least) +
          (greatest_area > 0 ? std::abs(normal.dot(area)) / greatest_area : 0);
+}
+
+std::vector<Vector3> best_first(const Loop& loop, const Vector3& area, const std::vector<Vector3>& normals) {
+  std::vector<std::pair<double, std::size_t>> order(normals.size());
+  for (std::size_t k = 0; k < normals.size(); ++k)
+    order[k] = {-projection_quality(loop, normals[k], area), k};
+  std::sort(order.begin(), order.end());
+  std::vector<Vector3> sorted;
+  for (const auto& [quality, k] : order) sorted.push_back(normals[k]);
+  return sorted;
 }
 
 std::optional<Polygon> projection_if_simple(const Loop& loop, const Vector3& normal) {
@@ -95,17 +109,33 @@ bool is_simple(const Polygon& polygon) {
   for (const Vector2& p : polygon) {
     if (!p.allFinite()) return false;
   }
-  Loop flat(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (folds_back(polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n])) return false;
-    flat[i] = Vector3(polygon[i].x(), polygon[i].y(), 0);
+  return count_crossings(polygon, 1) == 0;
+}
+
+bool segments_meet(const Vector2& a, const Vector2& b, const Vector2& c, const Vector2& d) {
+  return CGAL::do_intersect(Kernel::Segment_2(exact_point(a), exact_point(b)),
+                            Kernel::Segment_2(exact_point(c), exact_point(d)));
+}
+
+bool folds_back(const Vector2& a, const Vector2& b, const Vector2& c) {
+  const Kernel::Point_2 p = exact_point(a), q = exact_point(b), r = exact_point(c);
+  if (p == q || q == r) return true;
+  return CGAL::orientation(p, q, r) == CGAL::COLLINEAR && CGAL::angle(p, q, r) == CGAL::ACUTE;
+}
+
+std::size_t count_crossings(const Polygon& polygon, std::size_t most) {
+  const std::size_t n = polygon.size();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n && count < most; ++i) {
+    if (folds_back(polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n])) ++count;
   }
-  return LoopTree(flat).for_each_overlapping_pair([&](std::size_t i, std::size_t j) {
-    if (j == i + 1 || (i == 0 && j + 1 == n)) return true;  // neighbours have been looked at above
-    const Kernel::Segment_2 first(exact_point(polygon[i]), exact_point(polygon[(i + 1) % n]));
-    const Kernel::Segment_2 second(exact_point(polygon[j]), exact_point(polygon[(j + 1) % n]));
-    return !CGAL::do_intersect(first, second);
+  if (count >= most) return most;
+  LoopTree(in_space(polygon)).for_each_overlapping_pair([&](std::size_t i, std::size_t j) {
+    if (are_neighbours(i, j, n)) return true;  // looked at above
+    if (segments_meet(polygon[i], polygon[(i + 1) % n], polygon[j], polygon[(j + 1) % n])) ++count;
+    return count < most;
   });
+  return count;
 }
 
 ProjectionPlane plane_with_normal(const Vector3& normal) {
@@ -155,22 +185,26 @@ std::vector<Vector3> half_sphere_directions(int count) {
   return directions;
 }
 
-std::optional<Polygon> simple_projection(const Loop& loop, int directions) {
+std::vector<Vector3> fitted_normals(const Loop& loop) {
   const Vector3 area = area_vector(loop);
-  const auto first_simple = [&](const std::vector<Vector3>& normals) -> std::optional<Polygon> {
-    std::vector<std::pair<double, std::size_t>> order(normals.size());
-    for (std::size_t k = 0; k < normals.size(); ++k)
-      order[k] = {-projection_quality(loop, normals[k], area), k};
-    std::sort(order.begin(), order.end());
-    for (const auto& [quality, k] : order) {
-      if (std::optional<Polygon> polygon = projection_if_simple(loop, normals[k])) return polygon;
+  std::vector<Vector3> normals = {best_fitting_normal(loop)};
+  if (area.norm() > 0) normals.push_back(area.normalized());
+  return best_first(loop, area, normals);
+}
+
+std::vector<Vector3> spread_normals(const Loop& loop, int directions) {
+  return best_first(loop, area_vector(loop), half_sphere_directions(directions));
+}
+
+std::optional<Polygon> simple_projection(const Loop& loop, int directions) {
+  const auto first_simple = [&loop](const std::vector<Vector3>& normals) -> std::optional<Polygon> {
+    for (const Vector3& normal : normals) {
+      if (std::optional<Polygon> polygon = projection_if_simple(loop, normal)) return polygon;
     }
     return std::nullopt;
   };
-  std::vector<Vector3> fitted = {best_fitting_normal(loop)};
-  if (area.norm() > 0) fitted.push_back(area.normalized());
-  if (std::optional<Polygon> polygon = first_simple(fitted)) return polygon;
-  return first_simple(half_sphere_directions(directions));
+  if (std::optional<Polygon> polygon = first_simple(fitted_normals(loop))) return polygon;
+  return first_simple(spread_normals(loop, directions));
 }
 
 ClosestPoints closest_points(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {

@@ -25,6 +25,15 @@ double signed_area(const Polygon& polygon);
 /// of points for polygons that are simple; stops at the first crossing.
 bool is_simple(const Polygon& polygon);
 
+/// Whether the segments ab and cd have a point in common. Exact.
+bool segments_meet(const Vector2& a, const Vector2& b, const Vector2& c, const Vector2& d);
+
+/// Whether the edges from b to a and from b to c have more than b in common. Exact.
+bool folds_back(const Vector2& a, const Vector2& b, const Vector2& c);
+
+/// The number of pairs of edges that keep the polygon from being simple, counted up to `most`. Exact.
+std::size_t count_crossings(const Polygon& polygon, std::size_t most);
+
 /// The plane of an orthogonal projection; `u`, `v` and `normal` are a right-handed orthonormal frame.
 struct ProjectionPlane {
   Vector3 u;
@@ -55,6 +64,11 @@ Vector3 area_vector(const Loop& loop);
 
 /// `count` unit vectors spread evenly over a half sphere, none of them along an axis.
 std::vector<Vector3> half_sphere_directions(int count);
+
+/// The normals of the best-fitting plane and of that with the greatest projected area (if there is one), and
+/// of `directions` others: in both groups those first that shorten the edges least.
+std::vector<Vector3> fitted_normals(const Loop& loop);
+std::vector<Vector3> spread_normals(const Loop& loop, int directions);
 
 /// A simple projection of the loop, counter-clockwise. The best-fitting plane and the plane with the greatest
 /// projected area first, then `directions` others, each time those first that shorten the edges least; the

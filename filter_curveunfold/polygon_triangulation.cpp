@@ -46,6 +46,7 @@ void mark_sides(Triangulation& triangulation) {
 }  // namespace
 
 std::vector<Triangle> triangulate_polygon(const std::vector<Eigen::Vector2d>& polygon) {
+  if (polygon.size() < 3) not_simple();
   std::vector<std::pair<Kernel::Point_2, Index>> points;
   for (const Eigen::Vector2d& p : polygon)
     points.emplace_back(Kernel::Point_2(p.x(), p.y()), static_cast<Index>(points.size()));

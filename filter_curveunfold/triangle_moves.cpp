@@ -3,117 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <tuple>
 
-#include "filter_curveunfold/loop_tree.h"
+#include "filter_curveunfold/loop_ring.h"
 
 namespace meshcomplete {
 namespace {
-
-/// Distances below this share of the loop's size (about 1) are indistinguishable from contact after the
-/// rounding of the distance computations; a triangle that comes as near to another strand counts as met.
-constexpr double contact = 1e-12;
-
-/// Likewise for directions, radians.
-constexpr double contact_angle = 1e-9;
-
-/// The sine of the angle between the unit vector `w` and the nearest direction s x + t y with s, t >= 0
-/// (1 when that angle is a right angle or more).
-double sine_to_wedge(const Vector3& w, const Vector3& x, const Vector3& y) {
-  const auto to_ray = [&w](const Vector3& ray) {
-    const double length = ray.norm();
-    if (!(length > 0) || w.dot(ray) <= 0) return 1.0;
-    return w.cross(ray).norm() / length;
-  };
-  double best = std::min(to_ray(x), to_ray(y));
-  const Vector3 normal = x.cross(y);
-  const double squared = normal.squaredNorm();
-  if (squared > 0 && w.cross(y).dot(normal) > 0 && x.cross(w).dot(normal) > 0) {
-    best = std::min(best, std::abs(w.dot(normal)) / std::sqrt(squared));
-  }
-  return best;
-}
-
-/// The loop as a ring from which points are taken and into which they are put.
-struct Ring {
-  Loop position;
-  std::vector<std::size_t> before, after;
-  std::vector<char> present;
-  LoopTree tree;
-
-  Ring(const Loop& loop, const std::vector<std::size_t>& members)
-      : position(loop), before(loop.size()), after(loop.size()), present(loop.size(), 0), tree(loop) {
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      const std::size_t next = members[(k + 1) % members.size()];
-      present[members[k]] = 1;
-      after[members[k]] = next;
-      before[next] = members[k];
-    }
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      if (!present[i]) {
-        tree.remove_segment(i);
-      } else if (after[i] != (i + 1) % loop.size()) {
-        tree.set_segment(i, position[i], position[after[i]]);
-      }
-    }
-  }
-
-  void remove(std::size_t point) {
-    present[point] = 0;
-    after[before[point]] = after[point];
-    before[after[point]] = before[point];
-    tree.remove_segment(point);
-    tree.set_segment(before[point], position[before[point]], position[after[point]]);
-  }
-
-  void insert(std::size_t point, std::size_t from, std::size_t to) {
-    present[point] = 1;
-    before[point] = from;
-    after[point] = to;
-    after[from] = point;
-    before[to] = point;
-    tree.set_segment(from, position[from], position[point]);
-    tree.set_segment(point, position[point], position[to]);
-  }
-
-  /// Whether no part of the loop but the edges at `from` and `to` themselves comes nearer than `margin` to
-  /// the triangle from - apex - to, and those edges leave it by an angle with a sine above `least_sine`.
-  /// `skip` is the point at the apex when it is in the ring.
-  bool is_clean(std::size_t from, const Vector3& apex, std::size_t to, std::size_t skip, double margin,
-                double least_sine) const {
-    const Vector3 &a = position[from], &b = position[to];
-    const std::size_t outer_from = before[from], outer_to = after[to];
-    if (outer_from != to && outer_from != outer_to) {
-      if (sine_to_wedge((position[outer_from] - a).normalized(), b - a, apex - a) <= least_sine) return false;
-      if (sine_to_wedge((position[outer_to] - b).normalized(), a - b, apex - b) <= least_sine) return false;
-    }
-    LoopTree::Box box = LoopTree::box_of(a, b);
-    for (int k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], apex[k]) - margin;
-      box.high[k] = std::max(box.high[k], apex[k]) + margin;
-    }
-    return tree.for_each_in_box(box, [&](std::size_t s) {
-      if (s == from || s == skip || s == outer_from || s == to) return true;
-      return squared_distance_to_triangle(position[s], position[after[s]], a, b, apex) > margin * margin;
-    });
-  }
-};
-
-struct Height {
-  double along;
-  double height;
-  double chord;
-};
-
-Height height_over_chord(const Vector3& a, const Vector3& p, const Vector3& b) {
-  const Vector3 chord = b - a;
-  const double squared = chord.squaredNorm();
-  if (!(squared > 0)) return {0.5, (p - a).norm(), 0};
-  const double along = (p - a).dot(chord) / squared;
-  const double clamped = std::clamp(along, 0.0, 1.0);
-  return {along, (p - a - clamped * chord).norm(), std::sqrt(squared)};
-}
 
 /// How often progress is looked at while points are taken out or put back.
 constexpr std::size_t progress_interval = 256;
@@ -127,6 +24,10 @@ constexpr double foot_margin = 0.1;
 
 /// A bump is halved so often before it is put on the chord itself.
 constexpr int most_bump_halvings = 24;
+
+/// A point is brought so often half-way from its wanted place to its chord before a bump to the other side
+/// may do.
+constexpr int most_wanted_halvings = 4;
 
 double turning(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 u = b - a, v = c - b;
@@ -145,7 +46,7 @@ class Candidates {
     }
   };
 
-  Candidates(const Ring& ring, const ReductionLimits& limits) : ring_(ring), limits_(limits) {}
+  Candidates(const LoopRing& ring, const ReductionLimits& limits) : ring_(ring), limits_(limits) {}
 
   bool at_short_edge(std::size_t p) const {
     return std::min(edge_before(p), edge_after(p)) < limits_.shortest_edge;
@@ -154,7 +55,7 @@ class Candidates {
   /// Takes a point into the queue when the limits let it out of a loop of `count` points.
   void offer(std::size_t p, std::size_t count) {
     const std::size_t before = ring_.before[p], after = ring_.after[p];
-    const Height h = height_over_chord(ring_.position[before], ring_.position[p], ring_.position[after]);
+    const ChordHeight h = height_over_chord(ring_.position[before], ring_.position[p], ring_.position[after]);
     if (!(h.chord > contact)) return;
     if (!at_short_edge(p)) {
       if (h.height > limits_.largest_height || count <= limits_.least_points) return;
@@ -179,13 +80,13 @@ class Candidates {
     return (ring_.position[p] - ring_.position[ring_.after[p]]).norm();
   }
 
-  const Ring& ring_;
+  const LoopRing& ring_;
   const ReductionLimits& limits_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
 };
 
 /// Whether the limits allow to take the point out, and doing so is an isotopy.
-bool may_be_removed(const Ring& ring, const ReductionLimits& limits, const Candidates::Entry& entry,
+bool may_be_removed(const LoopRing& ring, const ReductionLimits& limits, const Candidates::Entry& entry,
                     bool tiny) {
   const double margin =
       tiny ? contact : std::max({contact, limits.least_clearance, limits.clearance_share * entry.height});
@@ -193,6 +94,54 @@ bool may_be_removed(const Ring& ring, const ReductionLimits& limits, const Candi
       tiny ? contact_angle : std::max(contact_angle, std::sin(std::min(limits.least_angle, 1.5)));
   return ring.is_clean(entry.before, ring.position[entry.point], entry.after, entry.point, margin,
                        least_sine);
+}
+
+/// The point on its chord that a point taken out is put over.
+Vector3 foot_on_chord(const LoopRing& ring, const Removal& removal, double along) {
+  const Vector3 &a = ring.position[removal.before], &b = ring.position[removal.after];
+  return a + std::clamp(along, foot_margin, 1 - foot_margin) * (b - a);
+}
+
+/// Whether a point put back at `apex` leaves the polygon simple and keeps half its height over the chord as
+/// room to all sides, so that the next point finds some as well.
+bool has_room(const LoopRing& ring, const Removal& removal, const Vector3& apex, double height) {
+  const double chord = (ring.position[removal.after] - ring.position[removal.before]).norm();
+  return ring.is_clean(removal.before, apex, removal.after, ring.position.size(), height * chord / 2,
+                       std::min(0.5, height));
+}
+
+/// A place for the point over its chord, to the outside where the polygon is convex.
+Vector3 bump(const LoopRing& ring, const Removal& removal) {
+  const std::size_t a = removal.before, b = removal.after;
+  const Vector3 chord = ring.position[b] - ring.position[a];
+  const Vector3 right(chord.y(), -chord.x(), 0);
+  const double turn = turning(ring.position[ring.before[a]], ring.position[a], ring.position[b]) +
+                      turning(ring.position[a], ring.position[b], ring.position[ring.after[b]]);
+  const double side = turn >= 0 ? 1 : -1;
+  const Vector3 foot = foot_on_chord(ring, removal, removal.along);
+  double height = std::min(removal.height, highest_bump);
+  for (int k = 0; k < most_bump_halvings; ++k, height /= 2) {
+    const Vector3 candidate = foot + side * height * right;
+    if (has_room(ring, removal, candidate, height)) return candidate;
+  }
+  return foot;
+}
+
+/// The wanted place of a point, or one on the way from there to its chord; none when there is room next to
+/// the chord only.
+std::optional<Vector3> near_wanted_place(const LoopRing& ring, const Removal& removal,
+                                         const Vector2& wanted) {
+  const Vector3 place(wanted.x(), wanted.y(), 0);
+  const ChordHeight h = height_over_chord(ring.position[removal.before], place, ring.position[removal.after]);
+  if (!(h.chord > 0)) return std::nullopt;
+  const Vector3 foot = foot_on_chord(ring, removal, h.along);
+  double share = 1;
+  for (int k = 0; k < most_wanted_halvings; ++k, share /= 2) {
+    const Vector3 candidate = foot + share * (place - foot);
+    const double height = share * h.height / h.chord;
+    if (height <= highest_bump && has_room(ring, removal, candidate, height)) return candidate;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -212,7 +161,7 @@ Loop kept_points(const Loop& loop, const ReducedLoop& reduced) {
 }
 
 void reduce(const Loop& loop, const ReductionLimits& limits, ReducedLoop& reduced, const Progress& progress) {
-  Ring ring(loop, reduced.kept);
+  LoopRing ring(loop, reduced.kept);
   Candidates candidates(ring, limits);
   std::size_t count = reduced.kept.size();
   for (const std::size_t p : reduced.kept) candidates.offer(p, count);
@@ -242,7 +191,7 @@ void reduce(const Loop& loop, const ReductionLimits& limits, ReducedLoop& reduce
       refused.push_back(p);
       continue;
     }
-    const Height h = height_over_chord(loop[entry.before], loop[p], loop[entry.after]);
+    const ChordHeight h = height_over_chord(loop[entry.before], loop[p], loop[entry.after]);
     reduced.removals.push_back({p, entry.before, entry.after, h.along, h.height / h.chord});
     ring.remove(p);
     --count;
@@ -257,34 +206,17 @@ void reduce(const Loop& loop, const ReductionLimits& limits, ReducedLoop& reduce
   reduced.kept = std::move(kept);
 }
 
-Polygon reinserted(const Polygon& polygon, const ReducedLoop& reduced) {
+Polygon reinserted(const Polygon& polygon, const ReducedLoop& reduced, const Polygon* wanted) {
   Loop flat(reduced.kept.size() + reduced.removals.size(), Vector3::Zero());
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     flat[reduced.kept[k]] = Vector3(polygon[k].x(), polygon[k].y(), 0);
   }
-  Ring ring(flat, reduced.kept);
+  LoopRing ring(flat, reduced.kept);
   for (auto removal = reduced.removals.rbegin(); removal != reduced.removals.rend(); ++removal) {
-    const std::size_t a = removal->before, b = removal->after;
-    const Vector3 chord = ring.position[b] - ring.position[a];
-    const Vector3 right(chord.y(), -chord.x(), 0);
-    const double turn = turning(ring.position[ring.before[a]], ring.position[a], ring.position[b]) +
-                        turning(ring.position[a], ring.position[b], ring.position[ring.after[b]]);
-    const double side = turn >= 0 ? 1 : -1;
-    const double along = std::clamp(removal->along, foot_margin, 1 - foot_margin);
-    const Vector3 foot = ring.position[a] + along * chord;
-    double height = std::min(removal->height, highest_bump);
-    Vector3 apex = foot;
-    for (int k = 0; k < most_bump_halvings; ++k, height /= 2) {
-      const Vector3 candidate = foot + side * height * right;
-      // The bump keeps half its own height of room, so that the next one finds some as well.
-      const double margin = height * chord.norm() / 2;
-      if (ring.is_clean(a, candidate, b, flat.size(), margin, std::min(0.5, height))) {
-        apex = candidate;
-        break;
-      }
-    }
-    ring.position[removal->point] = apex;
-    ring.insert(removal->point, a, b);
+    std::optional<Vector3> place;
+    if (wanted) place = near_wanted_place(ring, *removal, (*wanted)[removal->point]);
+    ring.position[removal->point] = place ? *place : bump(ring, *removal);
+    ring.insert(removal->point, removal->before, removal->after);
   }
   Polygon result(flat.size());
   for (std::size_t i = 0; i < flat.size(); ++i)

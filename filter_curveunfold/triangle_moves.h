@@ -55,7 +55,9 @@ Loop kept_points(const Loop& loop, const ReducedLoop& reduced);
 /// Undoes the removals in the plane. `polygon` is a simple counter-clockwise polygon with a point for each
 /// point kept; the points taken out come back in reverse order as bumps of their height over their chord, to
 /// the outside where the polygon is convex, made as flat as needed to meet nothing. The result is simple (up
-/// to rounding, which the caller checks) and has one point per original number. Cost: like `reduce`.
-Polygon reinserted(const Polygon& polygon, const ReducedLoop& reduced);
+/// to rounding, which the caller checks) and has one point per original number. Where `wanted` gives a
+/// position for every original number, a point comes back there, or between there and its chord, when there
+/// is room. Cost: like `reduce`.
+Polygon reinserted(const Polygon& polygon, const ReducedLoop& reduced, const Polygon* wanted = nullptr);
 
 }  // namespace meshcomplete

@@ -5,6 +5,7 @@
 
 #include "common/core/error.h"
 #include "filter_curveunfold/annealing.h"
+#include "filter_curveunfold/crossing_removal.h"
 #include "filter_curveunfold/knot.h"
 #include "filter_curveunfold/loop_geometry.h"
 #include "filter_curveunfold/planar_stretch.h"
@@ -88,6 +89,15 @@ void unfold_by_annealing(const Loop& loop, const UnfoldOptions& options, Unfoldi
   result.polygon = std::move(*annealing.polygon);
 }
 
+/// Before the test for knots: a loop that comes out of this is none.
+void remove_crossings(const Loop& loop, Unfolding& result, const Progress& progress) {
+  CrossingRemoval removal = remove_crossings(loop, progress);
+  result.steps += removal.moves;
+  if (!removal.polygon) return;
+  result.outcome = UnfoldOutcome::untangled;
+  result.polygon = std::move(*removal.polygon);
+}
+
 void untangle(const Loop& loop, Unfolding& result, const Progress& progress) {
   DescentResult descent = descend(loop, progress);
   result.steps += descent.steps;
@@ -110,6 +120,8 @@ Unfolding unfold(const std::vector<Vector3>& input, const UnfoldOptions& options
     if (std::optional<Polygon> polygon = simple_projection(loop, projection_directions)) {
       result.outcome = UnfoldOutcome::projected;
       result.polygon = std::move(*polygon);
+    } else {
+      remove_crossings(loop, result, progress);
     }
   }
   if (result.polygon.empty()) {

@@ -8,7 +8,7 @@ Writes PREFIX-before.png and PREFIX-after.png, and with --unfolded PREFIX-unfold
 side of the surface dark, new faces orange. The camera looks at the point --at (default: the centre of the bounding box)
 from the direction --from; --width is what the picture shows across, as a share of the bounding box's diagonal.
 
-Needs the runner (build/bin/meshcomplete, or where MESHCOMPLETE says), f3d and xvfb-run.
+Needs the runner (build/bin/meshcomplete, or where the variable MESHCOMPLETE says), f3d, xvfb-run and ImageMagick.
 """
 
 import argparse
@@ -52,6 +52,10 @@ def unit(a):
 
 def vector(text):
     return tuple(float(x) for x in text.split(","))
+
+
+def as_text(values):
+    return ",".join("%.9g" % x for x in values)
 
 
 def read_off(path):
@@ -134,7 +138,6 @@ def render(scene, picture, options, centre, distance, folder):
     model = os.path.join(folder, "scene.vtk")
     scene.write(model)
     position = combine(centre, unit(options.direction), distance)
-    as_text = lambda values: ",".join("%.9g" % x for x in values)
     colormap = ",".join("%g,%g,%g,%g" % (value, *colour) for value, colour in COLOURS.items())
     command = ["xvfb-run", "-a", "f3d", model, "--dry-run", "--quiet", "--output", picture,
                "--resolution", "%d,%d" % (2 * options.size[0], 2 * options.size[1]), "--bg-color", "1,1,1",
@@ -176,6 +179,8 @@ def arguments():
 
 def main():
     options = arguments()
+    if not os.access(RUNNER, os.X_OK):
+        raise SystemExit(f"There is no runner at {RUNNER}: run ./complete once, or set MESHCOMPLETE.")
     steps = [word for step in options.steps or [("-f", DEFAULT_FILTER)] for word in step]
     if options.unfolded:
         steps += ["-p", "UnfoldedLayer=true"]

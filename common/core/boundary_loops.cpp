@@ -275,7 +275,7 @@ std::vector<BoundaryLoop> trace_boundary_loops(const TriangleMesh& mesh, const M
   std::vector<BoundaryLoop> loops = Tracer(mesh, topology).trace(progress.part(0, 0.5, ""));
   for (BoundaryLoop& loop : loops) {
     const auto least = std::min_element(loop.vertices.begin(), loop.vertices.end()) - loop.vertices.begin();
-    if (loop.defect == LoopDefect::none) {
+    if (loop.defect != LoopDefect::non_manifold_edge) {  // those are open chains
       std::rotate(loop.vertices.begin(), loop.vertices.begin() + least, loop.vertices.end());
       std::rotate(loop.faces.begin(), loop.faces.begin() + least, loop.faces.end());
     }

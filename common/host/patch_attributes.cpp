@@ -274,7 +274,8 @@ void Interpolation::set_face_attributes(PatchAttributes& result) const {
 
 void Interpolation::set_wedges(PatchAttributes& result) const {
   for (const Triangle& triangle : patch_.triangles) {
-    const short texture = wedge_texture_.at(component(triangle[0]));
+    const auto known = wedge_texture_.find(component(triangle[0]));
+    const short texture = known == wedge_texture_.end() ? short(0) : known->second;
     std::array<vcg::TexCoord2f, 3> wedges;
     for (std::size_t corner = 0; corner < 3; ++corner)
       wedges[corner] = texcoord_at(rows_.row(local(triangle[corner])), columns_.wedge_texcoord, texture);

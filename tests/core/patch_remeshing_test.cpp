@@ -77,7 +77,7 @@ void expect_rim_kept(const PatchMesh& patch, const std::vector<Vector3>& rim, co
 
 TEST(Refine, NoInnerEdgeStaysTooLong) {
   for (double length : {0.5, 0.2, 0.05}) {
-    const std::vector<Vector3> rim = ring(24, 0.3);
+    const std::vector<Vector3> rim = ring(static_cast<std::size_t>(2 * pi / length), 0.3);
     PatchMesh patch = fan(rim);
     std::vector<double> target = uniform_target(patch, length);
     const RemeshOptions options;
@@ -90,6 +90,23 @@ TEST(Refine, NoInnerEdgeStaysTooLong) {
     const double needed = area(patch) / (std::sqrt(3.0) / 2 * length * length);
     EXPECT_LT(static_cast<double>(patch.vertex_count() - rim.size()), 3 * needed);
   }
+}
+
+// Triangles at rim edges that are longer than twice the target have sides that are too long whatever is done.
+TEST(Refine, OnlyTrianglesAtTheRimStayTooLongOnACoarseRim) {
+  const std::vector<Vector3> rim = ring(24, 0.3);
+  PatchMesh patch = fan(rim);
+  std::vector<double> target = uniform_target(patch, 0.05);
+  const RemeshOptions options;
+  refine(patch, target, options);
+  expect_rim_kept(patch, rim, {});
+  for_inner_edges(patch, [&](Index h) {
+    const bool at_rim = patch.on_rim(patch.origin(h)) || patch.on_rim(patch.target(h));
+    if (!at_rim) {
+      EXPECT_LE(patch.length(h), 2 * options.longest * 0.05);
+    }
+  });
+  EXPECT_LT(static_cast<double>(patch.vertex_count()), 6 * area(patch) / (std::sqrt(3.0) / 2 * 0.05 * 0.05));
 }
 
 TEST(Refine, FlatStaysFlatAndKeepsItsArea) {
@@ -127,7 +144,7 @@ TEST(Refine, FlatPatchesBecomeDelaunay) {
 }
 
 TEST(Refine, TargetsAreInterpolated) {
-  const std::vector<Vector3> rim = ring(60);
+  const std::vector<Vector3> rim = ring(160);
   PatchMesh patch = fan(rim);
   std::vector<double> target;
   for (const Vector3& p : rim) target.push_back(p.x() > 0 ? 0.05 : 0.4);

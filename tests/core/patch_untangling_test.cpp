@@ -127,10 +127,12 @@ TEST_F(PatchUntangling, AVertexThroughTheInput) {
 }
 
 TEST_F(PatchUntangling, AVertexThroughAnotherTriangle) {
-  // Over the heads of its neighbours, down again and through the patch there.
-  const Index poked = vertex_near(Vector3(3, 3, 0));
-  const Vector3 at = patch_.position(poked);
-  patch_.move(poked, at + Vector3(1.7, 0.2, -0.3));
+  // Under its neighbours and through the walls of a dent beyond them.
+  const Index poked = vertex_near(Vector3(3, 4, 0)), dented = vertex_near(Vector3(5, 4, 0));
+  ASSERT_FALSE(patch_.joined(poked, dented));
+  const Vector3 at = patch_.position(poked), dent = patch_.position(dented) - Vector3(0, 0, 0.4);
+  patch_.move(dented, dent);
+  patch_.move(poked, dent + Vector3(0.03, 0.05, 0.2));
   expect_untangled(PatchDefect::meets_itself, at, 4.5);
 }
 

@@ -160,7 +160,7 @@ TEST(ObstructedEdges, AFaceThroughAnEdgeIsFound) {
   blade.triangles = {{0, 1, 2}};
   const TriangleMesh mesh = test::join(sphere, blade);
   EXPECT_EQ(obstructed_edges(InputNeighbourhood(mesh), loop), std::vector<Index>{edge});
-  for (Vector3& p : blade.vertices) p += 3 * along;  // past the end of the edge, through none or the next one
+  for (Vector3& p : blade.vertices) p += 8 * along;  // past the end of the edge
   const TriangleMesh beside = test::join(sphere, blade);
   for (Index other : obstructed_edges(InputNeighbourhood(beside), loop)) EXPECT_NE(other, edge);
 }

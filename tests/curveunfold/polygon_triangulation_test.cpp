@@ -176,6 +176,7 @@ TEST(PolygonTriangulation, PolygonsThatAreNotSimpleAreErrors) {
       {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 3}, {5, 3}, {0, 2}},  // out and back through a side
       {{0, 0}, {1, 0}, {2, 0}},                                  // no area
       {{0, 0}, {1, 0}},
+      {{0, 0}},
       {},
   };
   for (const Polygon& polygon : polygons) {
