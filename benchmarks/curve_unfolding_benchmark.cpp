@@ -26,7 +26,7 @@ using namespace meshcomplete;
 using Clock = std::chrono::steady_clock;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double patience = 300;  // seconds that a hole may take before it is given up
+constexpr double patience = 120;  // seconds that a hole may take before it is given up
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -224,7 +224,7 @@ void table_one() {
 void eight_holes() {
   TriangleMesh model;
   std::size_t rim = 0, holes = 0;
-  for (const std::size_t size : {30, 46, 60, 70, 84, 96, 120, 160}) {
+  for (const std::size_t size : {30, 53, 53, 70, 84, 96, 120, 160}) {
     std::optional<TriangleMesh> ball = strongly_curved(size < 80 ? 4 : 5, size);
     if (!ball) continue;
     model = test::join(model, test::translated(*ball, Vector3(3.0 * static_cast<double>(holes++), 0, 0)));

@@ -221,21 +221,38 @@ class Comparison {
     return root;
   }
 
+  /// What the faces at one edge of the output are like.
+  struct EdgeState {
+    bool open = false, clean = true;
+    void include(bool is_open, bool is_clean) {
+      open |= is_open;
+      clean &= is_clean;
+    }
+  };
+  using EdgeStates = std::map<std::pair<Index, Index>, EdgeState>;
+
+  bool kept_its_number(Index v) const { return v < input_places_.size() && input_places_[v] == output_places_[v]; }
+
   void add_holes(Record& record) const {
     const std::vector<std::size_t> piece = pieces();
     std::vector<char> bad_piece(piece.size(), false);
     for (std::size_t f = 0; f < piece.size(); ++f)
       if (new_[f] && (bad_[f] || smallest_angle(corners_[f]) == 0)) bad_piece[piece[f]] = true;
-    struct Edge {
-      bool open = false, clean = true;
-    };
-    std::map<std::pair<Index, Index>, Edge> edges;
+    // Two parts of a mesh may have edges at one place: vertices that kept their numbers tell them apart.
+    EdgeStates by_number, by_place;
     for (Index h = 0; h < topology_.opposite.size(); ++h) {
-      const Triangle& t = output_.triangles[h / 3];
-      Edge& edge = edges[edge_key(output_places_[t[h % 3]], output_places_[t[(h + 1) % 3]])];
-      edge.open |= topology_.opposite[h] >= topology_.opposite.size();
-      edge.clean &= !(new_[h / 3] && bad_piece[piece[h / 3]]);
+      const Index a = output_.triangles[h / 3][h % 3], b = output_.triangles[h / 3][(h + 1) % 3];
+      const bool open = topology_.opposite[h] >= topology_.opposite.size();
+      const bool clean = !(new_[h / 3] && bad_piece[piece[h / 3]]);
+      by_place[edge_key(output_places_[a], output_places_[b])].include(open, clean);
+      if (kept_its_number(a) && kept_its_number(b)) by_number[edge_key(a, b)].include(open, clean);
     }
+    const auto state = [&](Index a, Index b) {
+      const auto numbered = by_number.find(edge_key(a, b));
+      if (numbered != by_number.end() && !numbered->second.open) return numbered->second;
+      const auto placed = by_place.find(edge_key(input_places_[a], input_places_[b]));
+      return placed != by_place.end() ? placed->second : EdgeState{true, false};
+    };
     std::size_t holes = 0, closed = 0, clean = 0, sheets = 0, sheets_closed = 0;
     for (const BoundaryLoop& loop : trace_boundary_loops(input_, build_topology(input_))) {
       bool is_closed = true, is_clean = true;
@@ -243,9 +260,9 @@ class Comparison {
         const Index next = loop.vertices[(i + 1) % loop.vertices.size()];
         const Triangle& face = input_.triangles[loop.faces[i]];
         if (std::count(face.begin(), face.end(), next) == 0) continue;  // behind the end of an open chain
-        const auto edge = edges.find(edge_key(input_places_[loop.vertices[i]], input_places_[next]));
-        is_closed &= edge != edges.end() && !edge->second.open;
-        is_clean &= edge != edges.end() && edge->second.clean;
+        const EdgeState edge = state(loop.vertices[i], next);
+        is_closed &= !edge.open;
+        is_clean &= edge.clean;
       }
       (is_sheet(loop) ? sheets : holes) += 1;
       (is_sheet(loop) ? sheets_closed : closed) += is_closed;

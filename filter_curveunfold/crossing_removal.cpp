@@ -1,7 +1,6 @@
 #include "filter_curveunfold/crossing_removal.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -23,13 +22,17 @@ constexpr std::size_t tried_planes = 3;
 /// A plane seen steeper than this shows the loop as a sliver: the least share of the greatest projected area.
 constexpr double least_area_share = 0.6;
 
+/// Loops whose points stand further from a plane than this share of their extent along it bend on the whole:
+/// any projection squeezes them, and the descent gives a more open polygon.
+constexpr double nearly_planar = 0.2;
+
 /// More crossings than this share of the points are no matter of a few teeth.
 constexpr double most_crossings_share = 0.25;
 
 /// Points that may be taken out: so many for each crossing and so many in any case, but no more than a share
 /// of all points.
-constexpr std::size_t moves_per_crossing = 3;
-constexpr std::size_t spare_moves = 6;
+constexpr std::size_t moves_per_crossing = 6;
+constexpr std::size_t spare_moves = 12;
 constexpr double most_moves_share = 0.3;
 
 /// What stands further from its chord than this (the loop is about 1 across) is no tooth but part of the
@@ -131,16 +134,20 @@ void ShadowedLoop::remove(std::size_t point, const ChordHeight& height) {
 bool ShadowedLoop::move_at(const Pair& crossing) {
   struct Move {
     bool removes_none;  // the crossing only moves on
+    bool outside;       // of the shorter part of the loop that the crossing cuts off
     double height;
     std::size_t point;
     ChordHeight chord;
     bool operator<(const Move& other) const {
-      return std::tie(removes_none, height, point) < std::tie(other.removes_none, other.height, other.point);
+      return std::tie(removes_none, outside, height, point) <
+             std::tie(other.removes_none, other.outside, other.height, other.point);
     }
   };
+  const auto& [first, second] = crossing;
+  const std::size_t first_end = plane_.after[first], second_end = plane_.after[second];
+  const bool short_between = second - first <= plane_.position.size() / 2;
   std::vector<Move> moves;
-  for (const std::size_t point :
-       {crossing.first, plane_.after[crossing.first], crossing.second, plane_.after[crossing.second]}) {
+  for (const std::size_t point : {first, first_end, second, second_end}) {
     const std::size_t before = plane_.before[point], after = plane_.after[point];
     const ChordHeight chord =
         height_over_chord(space_.position[before], space_.position[point], space_.position[after]);
@@ -149,7 +156,8 @@ bool ShadowedLoop::move_at(const Pair& crossing) {
         edges_across(before, point, none).size() + edges_across(point, after, none).size();
     const std::size_t then = edges_across(before, after, point).size();
     if (then > now) continue;
-    moves.push_back({then == now, chord.height, point, chord});
+    const bool between = point == first_end || point == second;
+    moves.push_back({then == now, between != short_between, chord.height, point, chord});
   }
   std::sort(moves.begin(), moves.end());
   for (const Move& move : moves) {
@@ -221,6 +229,8 @@ bool untie(ShadowedLoop& loop, std::size_t most_moves, std::size_t& moves, const
 
 CrossingRemoval remove_crossings(const Loop& loop, const Progress& progress) {
   CrossingRemoval result;
+  const PrincipalSpread spread = principal_spread(loop);
+  if (spread.least > nearly_planar * spread.greatest) return result;
   const double points = static_cast<double>(loop.size());
   const auto most_crossings = static_cast<std::size_t>(most_crossings_share * points);
   for (const Polygon& shadow : candidates(loop, most_crossings)) {

@@ -28,7 +28,8 @@ void check_options(const CurveUnfoldingOptions& options) {
   if (!(u.min_distance >= 1e-9 && u.min_distance <= 1e-2))
     throw CompletionError(stage, "The least distance must lie between 1e-9 and 0.01.");
   if (!(u.cooling > 0 && u.cooling < 1)) throw CompletionError(stage, "The cooling rate must lie between 0 and 1.");
-  if (!(u.start_temperature > 0)) throw CompletionError(stage, "The start temperature must be positive.");
+  if (!(std::isfinite(u.start_temperature) && u.start_temperature > 0))
+    throw CompletionError(stage, "The start temperature must be positive.");
 }
 
 // Wall seconds between the ends of stages.

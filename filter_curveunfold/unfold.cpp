@@ -18,8 +18,12 @@ namespace {
 /// Directions of projection beyond the two fitted planes: about 23 degrees from one to the next.
 constexpr int projection_directions = 48;
 
+/// From so many points on crossings are removed one by one where that is enough. The descent unfolds shorter
+/// loops within milliseconds, and to more open polygons.
+constexpr std::size_t least_long_loop = 128;
+
 /// Steps within the plane when the caller wants a more open polygon: most are nearly convex by then.
-constexpr int stretch_steps = 60;
+constexpr int stretch_steps = 40;
 
 void validate(const std::vector<Vector3>& loop) {
   const char* stage = "unfolding a boundary loop";
@@ -120,7 +124,7 @@ Unfolding unfold(const std::vector<Vector3>& input, const UnfoldOptions& options
     if (std::optional<Polygon> polygon = simple_projection(loop, projection_directions)) {
       result.outcome = UnfoldOutcome::projected;
       result.polygon = std::move(*polygon);
-    } else {
+    } else if (loop.size() >= least_long_loop) {
       remove_crossings(loop, result, progress);
     }
   }

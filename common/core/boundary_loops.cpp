@@ -197,13 +197,13 @@ class SheetTest {
       : mesh_(mesh), topology_(topology), loops_(loops), stamp_(mesh.triangles.size(), none) {
     for (std::size_t i = 0; i < loops.size(); ++i) {
       perimeters_.push_back(perimeter(mesh, loops[i]));
-      areas_.push_back(loops[i].defect == LoopDefect::none ? vector_area(mesh, loops[i]).norm() : 0.0);
+      areas_.push_back(loops[i].defect == LoopDefect::none ? vector_area(mesh, loops[i]) : Vector3(Vector3::Zero()));
       for (Index face : loops[i].faces) loops_at_face_.emplace(face, i);
     }
   }
 
   LoopDefect test(std::size_t loop) {
-    const double limit = open_sheet_area_ratio * areas_[loop];
+    const double limit = open_sheet_area_ratio * areas_[loop].norm();
     std::vector<Index> flood;
     std::vector<std::size_t> rims;
     double area = 0;
@@ -224,12 +224,14 @@ class SheetTest {
     if (flood.size() == 1) return LoopDefect::isolated_triangle;
     std::sort(rims.begin(), rims.end());
     rims.erase(std::unique(rims.begin(), rims.end()), rims.end());
+    // What the sheet's faces add up to as vectors is what all its rims enclose; that of a band or a short tube is nothing.
+    Vector3 enclosed = areas_[loop];
     for (std::size_t rim : rims)
       if (rim != loop) {
-        area += areas_[rim];
+        enclosed += areas_[rim];
         if (perimeters_[rim] > perimeters_[loop]) return LoopDefect::none;
       }
-    return area <= limit ? LoopDefect::open_sheet : LoopDefect::none;
+    return area <= open_sheet_area_ratio * enclosed.norm() ? LoopDefect::open_sheet : LoopDefect::none;
   }
 
  private:
@@ -237,7 +239,8 @@ class SheetTest {
   const MeshTopology& topology_;
   const std::vector<BoundaryLoop>& loops_;
   std::vector<Index> stamp_;  // the last loop whose flood reached a face
-  std::vector<double> perimeters_, areas_;
+  std::vector<double> perimeters_;
+  std::vector<Vector3> areas_;  // as vectors
   std::unordered_multimap<Index, std::size_t> loops_at_face_;
 };
 

@@ -23,6 +23,7 @@ class Remesher {
   Remesher(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options)
       : patch_(patch), target_(target), options_(options) {}
 
+  void check_size() const;
   void split_long_edges(const Progress& progress);
   void collapse_short_edges();
   void flip_all();
@@ -48,6 +49,7 @@ class Remesher {
     const std::pair<Index, Index> pair(std::min(a, b), std::max(a, b));
     return std::binary_search(options_.forbidden.begin(), options_.forbidden.end(), pair);
   }
+  [[noreturn]] void too_many_vertices() const;
   bool wants_flip(Index h) const;
   void flip_around(Index vertex);
   void flip_stack();
@@ -136,6 +138,24 @@ std::vector<Remesher::LongEdge> Remesher::long_edges() const {
   return edges;
 }
 
+void Remesher::too_many_vertices() const {
+  throw CompletionError("refining the patch", "The patch would need more than " + std::to_string(options_.max_vertices) +
+                                                  " vertices at this edge length; ask for longer edges.");
+}
+
+// Triangles whose sides are all short enough have at most a known area, and there are two of them per vertex: this many
+// vertices are needed at least, and it is better to know before they have been made.
+void Remesher::check_size() const {
+  double triangles = 0;
+  for (Index t = 0; t < patch_.triangle_count(); ++t) {
+    if (!patch_.alive(t)) continue;
+    const Triangle& corners = patch_.triangles()[t];
+    const double side = options_.longest * std::max({target_[corners[0]], target_[corners[1]], target_[corners[2]]});
+    triangles += 0.5 * patch_.area_normal(t).norm() / (0.25 * std::sqrt(3.0) * side * side);
+  }
+  if (0.5 * triangles > static_cast<double>(options_.max_vertices)) too_many_vertices();
+}
+
 // In passes, each over the edges that are too long at its start: splitting needles makes new long edges for ever, and
 // the passes are as many as halving the longest edge takes, and as many again for the edges that splits add.
 void Remesher::split_long_edges(const Progress& progress) {
@@ -148,10 +168,7 @@ void Remesher::split_long_edges(const Progress& progress) {
       const Index h = edge.half_edge;
       // Stale when flips or splits have changed what the half-edge joins.
       if (patch_.origin(h) != edge.from || patch_.target(h) != edge.to) continue;
-      if (patch_.vertex_count() >= options_.max_vertices)
-        throw CompletionError("refining the patch", "The patch would need more than " +
-                                                        std::to_string(options_.max_vertices) +
-                                                        " vertices at this edge length; ask for longer edges.");
+      if (patch_.vertex_count() >= options_.max_vertices) too_many_vertices();
       flip_around(split(h));
     }
     progress.check();
@@ -242,6 +259,7 @@ void Remesher::compact() {
 void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options, const Progress& progress) {
   Remesher remesher(patch, target, options);
   remesher.flip_all();
+  remesher.check_size();
   remesher.split_long_edges(progress);
   remesher.split_forbidden();
 }

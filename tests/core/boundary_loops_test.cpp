@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "tests/support/loop_families.h"
 #include "tests/support/meshes.h"
 #include "tests/support/patches.h"
 
@@ -288,6 +289,22 @@ TEST(BoundaryLoops, AHemisphereOrAVaseIsNoSheet) {
   const TriangleMesh vase =
       test::with_patch(cylinder, test::fan_patch(cylinder, loops_of(cylinder)[0], Vector3(0, 0, 0)));
   EXPECT_EQ(defects(right_loops(vase)), std::vector<LoopDefect>{LoopDefect::none});
+}
+
+// A ring of a coin's edge, or a band along a rim of any shape, has two rims and no inside that a patch could double.
+TEST(BoundaryLoops, ABandIsNoSheet) {
+  const std::vector<LoopDefect> two_holes(2, LoopDefect::none);
+  EXPECT_EQ(defects(right_loops(test::open_cylinder(24, 1, 1, 1.0 / 64))), two_holes);
+  std::vector<Vector3> outer;
+  const std::vector<Vector3> rim = testing::wound_rim(48, 2);
+  for (const Vector3& p : rim) outer.push_back(p - Vector3(0, 0, 0.02));
+  EXPECT_EQ(defects(right_loops(test::collar(rim, outer))), two_holes);
+  // The same as narrow, but flat: a sheet with a large hole in it.
+  const TriangleMesh frame = test::without_faces(test::flat_grid(20, 20), [](Index f) {
+    const Index x = f / 2 % 20, y = f / 2 / 20;
+    return x > 0 && x < 19 && y > 0 && y < 19;
+  });
+  EXPECT_EQ(defects(right_loops(frame)), (std::vector<LoopDefect>{LoopDefect::open_sheet, LoopDefect::none}));
 }
 
 // --- rims that no patch can have

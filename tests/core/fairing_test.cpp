@@ -240,7 +240,7 @@ TEST(Fairing, NormalVariationLowersTheJumpsOfTheNormals) {
         jumps[static_cast<int>(energy)] = normal_jumps(c.surface);
       }
       EXPECT_LT(jumps[2], 0.7 * jumps[0]) << "membrane, " << inner;
-      EXPECT_LT(jumps[2], 1.05 * jumps[1]) << "thin plate, which it starts from, " << inner;
+      EXPECT_LT(jumps[2], 1.001 * jumps[1]) << "thin plate, which it starts from, " << inner;
     }
 }
 
@@ -269,8 +269,10 @@ TEST(Fairing, RigidMotionsCommute) {
       for (Vector3& p : moved.surface.vertices) p = turn * p + offset;
       minimize_energy(c.surface, c.fixed, energy, weights);
       minimize_energy(moved.surface, moved.fixed, energy, weights);
+      // The normal variation is descended in steps, which may end one earlier or later.
+      const double tolerance = energy == SurfaceEnergy::normal_variation ? 1e-3 : 1e-9;
       for (std::size_t v = 0; v < c.fixed.size(); ++v)
-        EXPECT_LT((moved.surface.vertices[v] - (turn * c.surface.vertices[v] + offset)).norm(), 1e-9);
+        EXPECT_LT((moved.surface.vertices[v] - (turn * c.surface.vertices[v] + offset)).norm(), tolerance);
     }
 }
 
