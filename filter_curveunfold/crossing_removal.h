@@ -20,10 +20,9 @@ struct CrossingRemoval {
 /// the projection has them, or as near to that as there is room. A loop that is unfolded this way is
 /// unknotted: the moves are isotopies.
 ///
-/// Gives up early: the loop has to be nearly planar, only small teeth are taken out, and not many, so that the
-/// polygon keeps the shape of the projection. Loops that are bent, wound or tangled on the whole are left to
-/// `descend`. Deterministic.
-/// Cost: O(n log n), times a dozen directions of projection.
+/// Gives up early: the loop has to be nearly planar, only small teeth are taken out, and not many, so that
+/// the polygon keeps the shape of the projection. Loops that are bent, wound or tangled on the whole are left
+/// to `descend`. Deterministic. Cost: O(n log n), times a dozen directions of projection.
 CrossingRemoval remove_crossings(const Loop& loop, const Progress& progress = Progress());
 
 }  // namespace meshcomplete

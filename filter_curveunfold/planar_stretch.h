@@ -17,7 +17,7 @@ struct PlanarStretch {
 /// to the lengths that they have in `loop`: projections shorten edges, and reinserted points stand in
 /// arbitrary places. The polygon stays simple all the way, and becomes more convex with every one of up to
 /// `steps` steps; it stops early when it is convex and its edges are within a twentieth of their lengths.
-/// Large polygons flow with fewer points, the others are put back. Cost: O(n log n) plus steps on at most 160
+/// Large polygons flow with fewer points, the others are put back. Cost: O(n log n) plus steps on at most 96
 /// points.
 PlanarStretch stretched(const Polygon& polygon, const Loop& loop, int steps,
                         const Progress& progress = Progress());

@@ -22,8 +22,11 @@ constexpr int projection_directions = 48;
 /// loops within milliseconds, and to more open polygons.
 constexpr std::size_t least_long_loop = 128;
 
-/// Steps within the plane when the caller wants a more open polygon: most are nearly convex by then.
-constexpr int stretch_steps = 40;
+/// Steps within the plane when the caller wants a more open polygon: most are nearly convex by then. Long
+/// loops flow with as many points as the planar stretch takes at most, where each step costs its full few
+/// milliseconds.
+constexpr int stretch_steps = 60;
+constexpr int long_stretch_steps = 40;
 
 void validate(const std::vector<Vector3>& loop) {
   const char* stage = "unfolding a boundary loop";
@@ -138,7 +141,8 @@ Unfolding unfold(const std::vector<Vector3>& input, const UnfoldOptions& options
     }
   }
   if (options.stretch && !result.polygon.empty()) {
-    PlanarStretch opened = stretched(result.polygon, loop, stretch_steps, progress);
+    const int steps = loop.size() >= least_long_loop ? long_stretch_steps : stretch_steps;
+    PlanarStretch opened = stretched(result.polygon, loop, steps, progress);
     result.polygon = std::move(opened.polygon);
     result.steps += opened.steps;
   }

@@ -14,7 +14,7 @@
 namespace meshcomplete {
 
 enum class UnfoldMethod {
-  automatic,  ///< projection when it is simple, else the self-avoiding descent
+  automatic,  ///< projection when it is simple, else without its crossings if they are few, else the self-avoiding descent
   annealing,  ///< the paper's simulated annealing, also for loops whose projection is simple already
   descent,    ///< the self-avoiding descent, also for loops whose projection is simple already
 };
@@ -22,7 +22,7 @@ enum class UnfoldMethod {
 enum class UnfoldOutcome {
   projected,     ///< the best-fitting plane's projection was simple: nothing to unfold
   annealed,      ///< unfolded by simulated annealing
-  untangled,     ///< unfolded by the self-avoiding descent
+  untangled,     ///< unfolded by moving a few crossings out of the way, or by the self-avoiding descent
   knotted,       ///< an invariant certifies a knot: no patch without self-intersection exists that is a disk
   not_unfolded,  ///< every try was used up
 };
@@ -41,7 +41,7 @@ struct Unfolding {
   UnfoldOutcome outcome = UnfoldOutcome::not_unfolded;
   std::vector<Eigen::Vector2d> polygon;  ///< simple, counter-clockwise, one point per loop vertex in the loop's order; empty unless unfolded
   int restarts = 0;       ///< annealing runs used (paper's d)
-  std::size_t steps = 0;  ///< steps tried in all runs
+  std::size_t steps = 0;  ///< steps tried in all runs; points moved out of the way count as one each
   double seconds = 0;
   std::optional<int> knot_determinant;  ///< set when the loop was tested for being knotted
   double total_curvature = 0;           ///< radians; below 4 pi certifies an unknot (Fary-Milnor)

@@ -222,6 +222,7 @@ class SheetTest {
       for (Index h = 3 * flood[i]; h < 3 * flood[i] + 3; ++h)
         if (topology_.opposite[h] < MeshTopology::non_manifold) reach(topology_.opposite[h] / 3);
     if (flood.size() == 1) return LoopDefect::isolated_triangle;
+    if (area > limit) return LoopDefect::none;
     std::sort(rims.begin(), rims.end());
     rims.erase(std::unique(rims.begin(), rims.end()), rims.end());
     // What the sheet's faces add up to as vectors is what all its rims enclose; that of a band or a short tube is nothing.

@@ -206,7 +206,8 @@ TEST(BoundaryLoops, AFinThatEndsAtTheRimMakesItAmbiguous) {
   for (const BoundaryLoop& loop : right_loops(mesh)) EXPECT_EQ(loop.defect, LoopDefect::non_manifold_edge);
 }
 
-// A closed tetrahedron on an edge that ends at the rim leaves two ends of fans there: only they can belong together.
+// A closed tetrahedron on an edge that ends at the rim leaves two ends of fans there: only they can belong
+// together.
 TEST(BoundaryLoops, TheOnlyContinuationAtANonManifoldEdgeIsTaken) {
   const TriangleMesh sphere = test::sphere_with_hole();
   TriangleMesh mesh = sphere;
@@ -261,7 +262,8 @@ TEST(BoundaryLoops, AMoebiusStripHasNoFront) {
 // --------------------------------------------------------------------------------------------------
 
 TEST(BoundaryLoops, ASingleTriangleIsNoHole) {
-  EXPECT_EQ(defects(right_loops(test::isolated_triangle())), std::vector<LoopDefect>{LoopDefect::isolated_triangle});
+  EXPECT_EQ(defects(right_loops(test::isolated_triangle())),
+            std::vector<LoopDefect>{LoopDefect::isolated_triangle});
   const TriangleMesh soup = test::unwelded(test::cube());
   EXPECT_EQ(defects(right_loops(soup)), std::vector<LoopDefect>(12, LoopDefect::isolated_triangle));
 }
@@ -282,7 +284,8 @@ TEST(BoundaryLoops, AHoleInASheetIsAHole) {
 }
 
 TEST(BoundaryLoops, AHemisphereOrAVaseIsNoSheet) {
-  EXPECT_EQ(defects(right_loops(test::sphere_with_hole(3, pi / 2))), std::vector<LoopDefect>{LoopDefect::none});
+  EXPECT_EQ(defects(right_loops(test::sphere_with_hole(3, pi / 2))),
+            std::vector<LoopDefect>{LoopDefect::none});
   EXPECT_EQ(defects(right_loops(test::open_cylinder())),
             (std::vector<LoopDefect>{LoopDefect::none, LoopDefect::none}));
   const TriangleMesh cylinder = test::open_cylinder(24, 4, 1, 1);
@@ -291,7 +294,8 @@ TEST(BoundaryLoops, AHemisphereOrAVaseIsNoSheet) {
   EXPECT_EQ(defects(right_loops(vase)), std::vector<LoopDefect>{LoopDefect::none});
 }
 
-// A ring of a coin's edge, or a band along a rim of any shape, has two rims and no inside that a patch could double.
+// A ring of a coin's edge, or a band along a rim of any shape, has two rims and no inside that a patch could
+// double.
 TEST(BoundaryLoops, ABandIsNoSheet) {
   const std::vector<LoopDefect> two_holes(2, LoopDefect::none);
   EXPECT_EQ(defects(right_loops(test::open_cylinder(24, 1, 1, 1.0 / 64))), two_holes);

@@ -27,8 +27,8 @@ struct Case {
   std::vector<char> fixed;
 };
 
-/// The top of the unit sphere within `outer` radians of the pole, as faces; vertices within `inner` of it are free,
-/// and pressed flat to begin with.
+/// The top of the unit sphere within `outer` radians of the pole, as faces; vertices within `inner` of it are
+/// free, and pressed flat to begin with.
 Case cap(double inner, double outer, int subdivisions = 3) {
   const TriangleMesh sphere = test::icosphere(subdivisions);
   const auto polar = [&](const Vector3& p) { return std::atan2(std::hypot(p.x(), p.y()), p.z()); };
@@ -44,7 +44,8 @@ Case cap(double inner, double outer, int subdivisions = 3) {
   return c;
 }
 
-/// A flat square of `n` * `n` cells with the vertices jittered; the outer `rings` + 1 rows of vertices are fixed.
+/// A flat square of `n` * `n` cells with the vertices jittered; the outer `rings` + 1 rows of vertices are
+/// fixed.
 Case sheet(int n, int rings, unsigned seed) {
   Case c;
   c.surface = test::flat_grid(n, n);
@@ -74,7 +75,8 @@ double normal_jumps(const TriangleMesh& mesh) {
   double sum = 0;
   for (const auto& [edge, pair] : normals)
     if (pair.size() == 2)
-      sum += (mesh.vertices[edge.first] - mesh.vertices[edge.second]).norm() * (pair[0] - pair[1]).squaredNorm();
+      sum +=
+          (mesh.vertices[edge.first] - mesh.vertices[edge.second]).norm() * (pair[0] - pair[1]).squaredNorm();
   return sum;
 }
 
@@ -88,7 +90,9 @@ double worst_radius_error(const Case& c) {
 double total_area(const TriangleMesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles)
-    sum += 0.5 * (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
+    sum +=
+        0.5 *
+        (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
   return sum;
 }
 
@@ -163,7 +167,8 @@ TEST(Fairing, CotangentWeightsLeaveAFlatTriangulationAlone) {
           // Sheared, so that the grid's right angles do not give weights of zero.
           const Vector3 sheared(grid.vertices[v].x() - 0.4 * grid.vertices[v].y(), grid.vertices[v].y(), 0);
           const Vector3 offset = c.surface.vertices[v] - grid.vertices[v];
-          c.surface.vertices[v] = sheared + 0.2 * offset.normalized() * std::min(offset.norm(), 1.0) / (1 + halving);
+          c.surface.vertices[v] =
+              sheared + 0.2 * offset.normalized() * std::min(offset.norm(), 1.0) / (1 + halving);
         }
       }
       if (!cotangent_sum_positive()) continue;
@@ -355,15 +360,16 @@ TEST(Fairing, AFreePieceThatTouchesNothingFixedIsAnError) {
 TEST(Fairing, EverythingAtOnePointIsAnError) {
   Case c = cap(0.6, 0.9);
   std::fill(c.surface.vertices.begin(), c.surface.vertices.end(), Vector3(1, 2, 3));
-  EXPECT_THROW(
-      minimize_energy(c.surface, c.fixed, SurfaceEnergy::thin_plate, LaplacianWeights::cotangent), CompletionError);
+  EXPECT_THROW(minimize_energy(c.surface, c.fixed, SurfaceEnergy::thin_plate, LaplacianWeights::cotangent),
+               CompletionError);
 }
 
 TEST(Fairing, CanBeCancelled) {
   Case c = cap(0.6, 0.9);
-  EXPECT_THROW(minimize_energy(c.surface, c.fixed, SurfaceEnergy::normal_variation, LaplacianWeights::cotangent,
-                               Progress([](double, const std::string&) { return false; })),
-               Cancelled);
+  EXPECT_THROW(
+      minimize_energy(c.surface, c.fixed, SurfaceEnergy::normal_variation, LaplacianWeights::cotangent,
+                      Progress([](double, const std::string&) { return false; })),
+      Cancelled);
 }
 
 TEST(Fairing, EnergiesHaveNames) {

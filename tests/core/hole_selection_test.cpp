@@ -29,7 +29,7 @@ bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A large flat sheet with a small and a middle-sized hole in it, bent at one side so that its outer rim is no hole.
+/// A large flat sheet with a small and a middle-sized hole in it.
 class HoleSelection : public ::testing::Test {
  protected:
   HoleSelection() {
@@ -129,7 +129,8 @@ TEST_F(HoleSelection, SelectedFaces) {
   const auto touches = std::find_if(mesh_.triangles.begin(), mesh_.triangles.end(), [&](const Triangle& t) {
     return std::count(t.begin(), t.end(), loops_[2].vertices[0]) == 1 &&
            std::none_of(t.begin(), t.end(), [&](Index v) {
-             return v != loops_[2].vertices[0] && std::count(loops_[2].vertices.begin(), loops_[2].vertices.end(), v);
+             return v != loops_[2].vertices[0] &&
+                    std::count(loops_[2].vertices.begin(), loops_[2].vertices.end(), v);
            });
   });
   ASSERT_NE(touches, mesh_.triangles.end());

@@ -59,7 +59,8 @@ double smallest_angle(const PatchMesh& patch, Index triangle) {
 }
 
 /// The rim is where it was and walked once, by boundary edges only, and no edge that is forbidden exists.
-void expect_rim_kept(const PatchMesh& patch, const std::vector<Vector3>& rim, const ForbiddenEdges& forbidden) {
+void expect_rim_kept(const PatchMesh& patch, const std::vector<Vector3>& rim,
+                     const ForbiddenEdges& forbidden) {
   ASSERT_EQ(patch.rim_size(), rim.size());
   for (Index v = 0; v < rim.size(); ++v) EXPECT_EQ(patch.position(v), rim[v]);
   std::size_t boundary = 0;
@@ -137,7 +138,8 @@ TEST(Refine, FlatPatchesBecomeDelaunay) {
     if (angle_at_apex(h) + angle_at_apex(g) <= pi + 1e-6) {
       ++delaunay;
     } else {
-      EXPECT_GT((patch.position(patch.apex(h)) - patch.position(patch.apex(g))).norm(), options.longest * 0.15);
+      EXPECT_GT((patch.position(patch.apex(h)) - patch.position(patch.apex(g))).norm(),
+                options.longest * 0.15);
     }
   });
   EXPECT_GT(delaunay * 10, edges * 9);

@@ -18,7 +18,8 @@ namespace {
 
 using Corners = std::array<Vector3, 3>;
 
-/// A box of the given depth without a lid, 8 by 8 squares wide, and a flat lid with an edge length of about one.
+/// A box of the given depth without a lid, 8 by 8 squares wide, and a flat lid with an edge length of about
+/// one.
 class PatchUntangling : public ::testing::Test {
  protected:
   explicit PatchUntangling(double depth = 0.5) : mesh_(box(depth)), input_(mesh_), patch_(lid()) {}
@@ -72,7 +73,8 @@ class PatchUntangling : public ::testing::Test {
     const Index rim = static_cast<Index>(patch_.rim_size());
     Patch patch;
     patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
-    for (Index v = rim; v < patch_.vertex_count(); ++v) patch.vertices.push_back(as_stored(patch_.position(v)));
+    for (Index v = rim; v < patch_.vertex_count(); ++v)
+      patch.vertices.push_back(as_stored(patch_.position(v)));
     for (Triangle t : patch_.triangles()) {
       for (Index& v : t) v = v < rim ? loops_[0].vertices[v] : patch.input_vertices + v - rim;
       patch.triangles.push_back(t);

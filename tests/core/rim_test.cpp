@@ -125,8 +125,8 @@ TEST(Rim, EdgeLengthsAreThoseOfTheRing) {
 // A tube whose one end is meshed three times as finely round the rim: the lengths follow the rim's own side.
 TEST(Rim, EdgeLengthsFollowTheMeshAlongTheRim) {
   std::vector<Vector3> rim, outer;
-  for (int i = 0; i <= 40; ++i) rim.emplace_back(0.25 * i, 0, 0);       // fine
-  for (int i = 0; i < 10; ++i) rim.emplace_back(10, 2.0 + i, 0);        // coarse
+  for (int i = 0; i <= 40; ++i) rim.emplace_back(0.25 * i, 0, 0);  // fine
+  for (int i = 0; i < 10; ++i) rim.emplace_back(10, 2.0 + i, 0);   // coarse
   for (int i = 0; i < 10; ++i) rim.emplace_back(9.0 - i, 11, 0);
   for (int i = 0; i < 10; ++i) rim.emplace_back(0, 10.0 - i, 0);
   for (const Vector3& p : rim) outer.push_back(p - Vector3(0, 0, 0.5));

@@ -27,12 +27,17 @@ CurveUnfoldingResult fill(const TriangleMesh& mesh, const CurveUnfoldingOptions&
   return fill_by_curve_unfolding(mesh, {}, options);
 }
 
-const std::vector<HoleReport>& holes(const CurveUnfoldingResult& result) { return result.completion.report.holes; }
+const std::vector<HoleReport>& holes(const CurveUnfoldingResult& result) {
+  return result.completion.report.holes;
+}
 
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool mentions(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 /// Selects one loop and asks for nothing else.
-CurveUnfoldingResult fill_loop(const TriangleMesh& mesh, const BoundaryLoop& loop, CurveUnfoldingOptions options = {}) {
+CurveUnfoldingResult fill_loop(const TriangleMesh& mesh, const BoundaryLoop& loop,
+                               CurveUnfoldingOptions options = {}) {
   MeshSelection selection;
   selection.vertices.assign(mesh.vertices.size(), 0);
   for (Index v : loop.vertices) selection.vertices[v] = 1;
@@ -86,8 +91,8 @@ void expect_all_closed(const TriangleMesh& mesh, const CurveUnfoldingOptions& op
 TEST(CurveUnfolding, ClosesEveryHole) {
   for (const TriangleMesh& mesh :
        {test::sphere_with_hole(), test::sphere_with_hole(3, 1.5), test::sphere_with_holes(6),
-        test::open_cylinder(), test::open_cylinder(5, 1),
-        test::sphere_with_touching_holes(), test::shuffled(test::sphere_with_holes(3), 9),
+        test::open_cylinder(), test::open_cylinder(5, 1), test::sphere_with_touching_holes(),
+        test::shuffled(test::sphere_with_holes(3), 9),
         test::without_ball(test::torus(32, 16), Vector3(1.4, 0, 0), 0.5),
         test::without_ball(test::uv_sphere(16, 24), Vector3(0, 0, 1), 0.3),
         test::translated(test::sphere_with_hole(), Vector3(500, 0, -300)),
@@ -96,7 +101,8 @@ TEST(CurveUnfolding, ClosesEveryHole) {
 }
 
 TEST(CurveUnfolding, TheResultIsWatertight) {
-  for (const TriangleMesh& mesh : {test::sphere_with_holes(6), test::open_cylinder(), test::sphere_with_hole(2, 1.2)}) {
+  for (const TriangleMesh& mesh :
+       {test::sphere_with_holes(6), test::open_cylinder(), test::sphere_with_hole(2, 1.2)}) {
     const CurveUnfoldingResult result = fill(mesh);
     const MeshStatistics statistics = measure(test::with_patch(mesh, result.completion.patch), true);
     EXPECT_TRUE(statistics.solid());
@@ -126,9 +132,8 @@ TEST(CurveUnfolding, NothingToDo) {
 }
 
 TEST(CurveUnfolding, SheetsAndSingleTrianglesAreSkipped) {
-  const TriangleMesh mesh =
-      test::join(test::join(test::flat_grid(4, 3), test::isolated_triangle()),
-                 test::translated(test::sphere_with_hole(2, 0.7), Vector3(20, 0, 0)));
+  const TriangleMesh mesh = test::join(test::join(test::flat_grid(4, 3), test::isolated_triangle()),
+                                       test::translated(test::sphere_with_hole(2, 0.7), Vector3(20, 0, 0)));
   const CurveUnfoldingResult result = fill(mesh);
   expect_adds_up(mesh, result);
   ASSERT_EQ(holes(result).size(), 3u);
@@ -149,7 +154,8 @@ TEST(CurveUnfolding, AnIslandThatIsNearlyFlatIsASheet) {
 }
 
 TEST(CurveUnfolding, DefectiveLoopsFailWithTheirReason) {
-  const TriangleMesh mesh = test::join(test::moebius_strip(), test::translated(test::book(), Vector3(9, 0, 0)));
+  const TriangleMesh mesh =
+      test::join(test::moebius_strip(), test::translated(test::book(), Vector3(9, 0, 0)));
   const CurveUnfoldingResult result = fill(mesh);
   expect_adds_up(mesh, result);
   EXPECT_EQ(result.completion.report.count(HoleOutcome::failed), holes(result).size());
@@ -181,25 +187,21 @@ TEST(CurveUnfolding, TwistedRims) {
   const std::vector<Rim> rims = {
       {"saddle", testing::saddle(40, 2, 0.5), {0, 0, -0.1}},
       {"crown", testing::saddle(60, 3, 1.0), {0, 0, -0.1}},
-      {"armpit", testing::sampled(60,
-                                  [](double t) {
-                                    // Two wings folded down nearly onto each other.
-                                    const double x = std::cos(t), y = 0.6 * std::sin(t);
-                                    return Vector3(0.25 * std::sin(2 * x), y, -1.2 * std::abs(x) * std::abs(x));
-                                  }),
+      {"armpit",
+       testing::sampled(60,
+                        [](double t) {
+                          // Two wings folded down nearly onto each other.
+                          const double x = std::cos(t), y = 0.6 * std::sin(t);
+                          return Vector3(0.25 * std::sin(2 * x), y, -1.2 * std::abs(x) * std::abs(x));
+                        }),
        {0, 0, 0.05}},
-      {"wound twice", testing::wound_rim(48, 2), {0, 0, -0.02}},
-      {"wound twice up", testing::wound_rim(48, 2), {0, 0, 0.02}},
-      {"wound twice high", testing::wound_rim(48, 2, 0.8), {0, 0, -0.02}},
-      {"wound twice high60", testing::wound_rim(60, 2, 0.8), {0, 0, 0.05}},
-      {"wound twice in", testing::wound_rim(60, 2, 0.5), {0, 0, 0}},
-      {"cyl", testing::wound_round_cylinder(60, 2), {0, 0, 0}},
-      {"helix", testing::closed_helix(60, 2), {0, 0, 0.03}},
+      {"wound round a cylinder", testing::wound_round_cylinder(60, 2), {0, 0, 0}},
       {"rough", testing::rough_rim(100, 3), {0, 0, 0}},
   };
   for (const Rim& rim : rims) {
     std::vector<Vector3> outer;
-    for (const Vector3& p : rim.points) outer.push_back(rim.away.isZero() ? Vector3(0.97 * p) : Vector3(p + rim.away));
+    for (const Vector3& p : rim.points)
+      outer.push_back(rim.away.isZero() ? Vector3(0.97 * p) : Vector3(p + rim.away));
     const TriangleMesh mesh = test::collar(rim.points, outer);
     const std::vector<BoundaryLoop> loops = loops_of(mesh);
     ASSERT_EQ(loops.size(), 2u) << rim.name;
@@ -217,7 +219,8 @@ TEST(CurveUnfolding, KnottedRimsAreRefused) {
     outer.push_back(core + 1.2 * (p - core));
   }
   const TriangleMesh ribbon = test::collar(rim, outer);
-  const TriangleMesh mesh = test::join(ribbon, test::translated(test::sphere_with_hole(2, 0.7), Vector3(10, 0, 0)));
+  const TriangleMesh mesh =
+      test::join(ribbon, test::translated(test::sphere_with_hole(2, 0.7), Vector3(10, 0, 0)));
   const CurveUnfoldingResult result = fill(mesh);
   expect_adds_up(mesh, result);
   ASSERT_EQ(holes(result).size(), 3u);
@@ -233,9 +236,10 @@ TEST(CurveUnfolding, KnottedRimsAreRefused) {
 
 TEST(CurveUnfolding, EnergiesAndWeights) {
   const TriangleMesh mesh = test::sphere_with_hole(3, 0.6);
-  for (const auto& [energy, route] : {std::pair(SurfaceEnergy::membrane, "projected, membrane"),
-                                      std::pair(SurfaceEnergy::thin_plate, "projected, thin plate"),
-                                      std::pair(SurfaceEnergy::normal_variation, "projected, normal variation")})
+  for (const auto& [energy, route] :
+       {std::pair(SurfaceEnergy::membrane, "projected, membrane"),
+        std::pair(SurfaceEnergy::thin_plate, "projected, thin plate"),
+        std::pair(SurfaceEnergy::normal_variation, "projected, normal variation")})
     for (LaplacianWeights weights : {LaplacianWeights::uniform, LaplacianWeights::cotangent}) {
       CurveUnfoldingOptions options;
       options.energy = energy;
@@ -289,7 +293,8 @@ TEST(CurveUnfolding, TheEdgeLengthAskedFor) {
 }
 
 TEST(CurveUnfolding, TheUnfoldedLayer) {
-  const TriangleMesh mesh = test::join(test::sphere_with_holes(4), test::translated(test::flat_grid(3, 3), Vector3(5, 0, 0)));
+  const TriangleMesh mesh =
+      test::join(test::sphere_with_holes(4), test::translated(test::flat_grid(3, 3), Vector3(5, 0, 0)));
   EXPECT_TRUE(fill(mesh).unfolded.triangles.empty()) << "only when asked for";
   CurveUnfoldingOptions options;
   options.unfolded_layer = true;
@@ -310,7 +315,9 @@ TEST(CurveUnfolding, TheUnfoldedLayer) {
   std::sort(edges.rbegin(), edges.rend());
   EXPECT_EQ(statistics.boundary_loops, edges);
   for (const Triangle& t : sheet.triangles)
-    EXPECT_GT((sheet.vertices[t[1]] - sheet.vertices[t[0]]).cross(sheet.vertices[t[2]] - sheet.vertices[t[0]]).z(), 0);
+    EXPECT_GT(
+        (sheet.vertices[t[1]] - sheet.vertices[t[0]]).cross(sheet.vertices[t[2]] - sheet.vertices[t[0]]).z(),
+        0);
   double left = 0;
   for (const BoundaryLoop& loop : loops_of(sheet)) {  // in the order of the holes, from left to right
     Eigen::AlignedBox3d box;
@@ -337,8 +344,10 @@ TEST(CurveUnfolding, OptionsOutOfRangeAreErrors) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (double length : {0.0, -1.0, infinity, nan}) expect_refused([&](auto& o) { o.edge_length = length; });
   for (int restarts : {0, -1, 10001}) expect_refused([&](auto& o) { o.unfolding.restarts = restarts; });
-  for (double distance : {0.0, 1e-10, 0.011, nan}) expect_refused([&](auto& o) { o.unfolding.min_distance = distance; });
-  for (double cooling : {0.0, 1.0, -0.5, nan}) expect_refused([&](auto& o) { o.unfolding.cooling = cooling; });
+  for (double distance : {0.0, 1e-10, 0.011, nan})
+    expect_refused([&](auto& o) { o.unfolding.min_distance = distance; });
+  for (double cooling : {0.0, 1.0, -0.5, nan})
+    expect_refused([&](auto& o) { o.unfolding.cooling = cooling; });
   for (double temperature : {0.0, -1.0, infinity, nan})
     expect_refused([&](auto& o) { o.unfolding.start_temperature = temperature; });
 }
@@ -378,13 +387,15 @@ TEST(CurveUnfolding, StagesAreTimed) {
   EXPECT_EQ(stages[1].first, "closing the holes");
   EXPECT_EQ(stages[2].first, "comparing the patches");
   for (const auto& [stage, seconds] : stages) EXPECT_GE(seconds, 0) << stage;
-  for (const HoleTimes& times : result.times) EXPECT_GT(times.unfolding + times.embedding + times.checking, 0);
+  for (const HoleTimes& times : result.times)
+    EXPECT_GT(times.unfolding + times.embedding + times.checking, 0);
 }
 
 TEST(CurveUnfolding, ProgressNeverGoesBackAndEndsAtOne) {
   double last = 0;
   bool ordered = true;
-  fill_by_curve_unfolding(test::sphere_with_holes(4), {}, {}, Progress([&](double fraction, const std::string&) {
+  fill_by_curve_unfolding(test::sphere_with_holes(4), {}, {},
+                          Progress([&](double fraction, const std::string&) {
                             ordered &= fraction >= last;
                             last = fraction;
                             return true;
@@ -400,7 +411,8 @@ TEST(CurveUnfolding, CanBeCancelledAtAnyTime) {
   ASSERT_GE(calls, 2);
   for (int stop = 1; stop <= std::min(calls - 1, 4); ++stop) {
     int call = 0;
-    EXPECT_THROW(fill_by_curve_unfolding(mesh, {}, {}, Progress([&](double, const std::string&) { return ++call < stop; })),
+    EXPECT_THROW(fill_by_curve_unfolding(mesh, {}, {},
+                                         Progress([&](double, const std::string&) { return ++call < stop; })),
                  Cancelled)
         << stop;
   }

@@ -81,8 +81,9 @@ TEST(Embedding, PatchesAreDisksOfTheResolutionAround) {
       for (Index v = 0; v < patch.vertex_count(); ++v) EXPECT_LE(patch.valence(v), 12u);
       double worst_angle = 4;
       for (Index h = 0; h < 3 * patch.triangle_count(); ++h)
-        worst_angle = std::min(worst_angle, angle_between(patch.position(patch.target(h)) - patch.position(patch.origin(h)),
-                                                          patch.position(patch.apex(h)) - patch.position(patch.origin(h))));
+        worst_angle = std::min(
+            worst_angle, angle_between(patch.position(patch.target(h)) - patch.position(patch.origin(h)),
+                                       patch.position(patch.apex(h)) - patch.position(patch.origin(h))));
       EXPECT_GT(worst_angle, 0.2) << "radians";
     }
 }
@@ -170,7 +171,8 @@ TEST(Embedding, ScalingByPowersOfTwoCommutesToTheBit) {
     const PatchMesh one = embed(rim, flat, options), other = embed(large, flat, options);
     EXPECT_EQ(one.triangles(), other.triangles());
     ASSERT_EQ(one.vertex_count(), other.vertex_count());
-    for (Index v = 0; v < one.vertex_count(); ++v) EXPECT_EQ(Vector3(1024 * one.position(v)), other.position(v));
+    for (Index v = 0; v < one.vertex_count(); ++v)
+      EXPECT_EQ(Vector3(1024 * one.position(v)), other.position(v));
   }
 }
 

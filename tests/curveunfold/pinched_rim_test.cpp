@@ -15,8 +15,8 @@
 namespace meshcomplete {
 namespace {
 
-/// A flat grid with two square holes that touch at a corner; the vertex there is two, one for each side, so that the rim
-/// is one loop of eight that passes the place twice.
+/// A flat grid with two square holes that touch at a corner; the vertex there is two, one for each side, so
+/// that the rim is one loop of eight that passes the place twice.
 TriangleMesh touching_squares() {
   const TriangleMesh grid = test::flat_grid(4, 4);
   TriangleMesh mesh = test::without_faces(grid, [](Index f) { return f / 2 == 5 || f / 2 == 10; });
@@ -49,7 +49,8 @@ TEST(PinchedRim, IsFoundByPosition) {
   EXPECT_TRUE(is_pinched(pinched_rim(touching_squares())));
   const TriangleMesh sphere = test::sphere_with_touching_holes();
   for (const BoundaryLoop& loop : test::loops_of(sphere))
-    EXPECT_FALSE(is_pinched(collect_rim(sphere, build_topology(sphere), loop))) << "two loops, each passes once";
+    EXPECT_FALSE(is_pinched(collect_rim(sphere, build_topology(sphere), loop)))
+        << "two loops, each passes once";
 }
 
 TEST(PinchedRim, ARimThatIsNotPinchedComesBackAsItIs) {
@@ -75,10 +76,12 @@ TEST(PinchedRim, OneFlapOverOneOfTheTwins) {
     ASSERT_EQ(opened.corners.size(), 1u);
     EXPECT_EQ(opened.corners[0], as_stored(opened.corners[0]));
     EXPECT_LT(height * opened.corners[0].z(), 0) << "positive heights are behind the surface";
-    EXPECT_LT((opened.corners[0] - Vector3(2, 2, 0)).norm(), 2 * std::abs(height)) << "a small flap: edges have length 1";
+    EXPECT_LT((opened.corners[0] - Vector3(2, 2, 0)).norm(), 2 * std::abs(height))
+        << "a small flap: edges have length 1";
     ASSERT_EQ(opened.flaps.size(), 2u);
 
-    const Index covered = at(opened.rim, Vector3(2, 2, 0)) == std::vector<Index>{twins[0]} ? twins[1] : twins[0];
+    const Index covered =
+        at(opened.rim, Vector3(2, 2, 0)) == std::vector<Index>{twins[0]} ? twins[1] : twins[0];
     EXPECT_EQ(opened.rim.positions[covered], opened.corners[0]);
     EXPECT_EQ(opened.rim.ring.vertices[covered], opened.corners[0]);
     EXPECT_EQ(opened.vertex_of[covered], 8u);
@@ -87,7 +90,8 @@ TEST(PinchedRim, OneFlapOverOneOfTheTwins) {
       EXPECT_EQ(opened.vertex_of[v], v);
       EXPECT_EQ(opened.rim.positions[v], rim.positions[v]);
     }
-    // The two flaps walk the covered vertex's rim edges the way the rim runs, and share the edge to the corner.
+    // The two flaps walk the covered vertex's rim edges the way the rim runs, and share the edge to the
+    // corner.
     const Index before = (covered + 7) % 8, after = (covered + 1) % 8;
     EXPECT_EQ(opened.flaps[0], (Triangle{before, covered, 8}));
     EXPECT_EQ(opened.flaps[1], (Triangle{covered, after, 8}));
@@ -107,7 +111,8 @@ TEST(PinchedRim, EdgesOnTopOfEachOtherAreForbidden) {
   const std::vector<Index> twins = at(rim, Vector3(2, 2, 0));
   const OpenedRim opened = open_pinches(rim, 0.2);
   EXPECT_TRUE(std::is_sorted(opened.rim.forbidden.begin(), opened.rim.forbidden.end()));
-  EXPECT_EQ(std::adjacent_find(opened.rim.forbidden.begin(), opened.rim.forbidden.end()), opened.rim.forbidden.end());
+  EXPECT_EQ(std::adjacent_find(opened.rim.forbidden.begin(), opened.rim.forbidden.end()),
+            opened.rim.forbidden.end());
   const std::set<std::pair<Index, Index>> forbidden(opened.rim.forbidden.begin(), opened.rim.forbidden.end());
   for (int i : {0, 1})
     for (Index step : {1u, 7u}) {

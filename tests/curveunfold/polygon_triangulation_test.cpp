@@ -29,8 +29,9 @@ double smallest_angle(const Vector2& a, const Vector2& b, const Vector2& c) {
   return std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
 }
 
-/// The greatest smallest angle of all triangulations. Triangles that are all counter-clockwise and fit together along
-/// the polygon's numbering cover a simple polygon exactly once, so visibility need not be looked at.
+/// The greatest smallest angle of all triangulations. Triangles that are all counter-clockwise and fit
+/// together along the polygon's numbering cover a simple polygon exactly once, so visibility need not be
+/// looked at.
 double best_smallest_angle(const Polygon& polygon) {
   const std::size_t n = polygon.size();
   std::vector<std::vector<double>> best(n, std::vector<double>(n, -1));
@@ -39,14 +40,15 @@ double best_smallest_angle(const Polygon& polygon) {
     for (std::size_t i = 0; i + span < n; ++i)
       for (std::size_t j = i + span, k = i + 1; k < j; ++k) {
         if (!(twice_area(polygon[i], polygon[k], polygon[j]) > 0)) continue;
-        best[i][j] = std::max(best[i][j], std::min({best[i][k], best[k][j],
-                                                    smallest_angle(polygon[i], polygon[k], polygon[j])}));
+        best[i][j] =
+            std::max(best[i][j],
+                     std::min({best[i][k], best[k][j], smallest_angle(polygon[i], polygon[k], polygon[j])}));
       }
   return best[0][n - 1];
 }
 
-/// A triangulation of the polygon: right number of triangles, counter-clockwise, every rim edge once, every other edge
-/// twice, areas that sum up.
+/// A triangulation of the polygon: right number of triangles, counter-clockwise, every rim edge once, every
+/// other edge twice, areas that sum up.
 void expect_triangulation(const Polygon& polygon, const std::vector<Triangle>& triangles) {
   ASSERT_EQ(triangles.size() + 2, polygon.size());
   const std::size_t n = polygon.size();
@@ -132,8 +134,10 @@ TEST(PolygonTriangulation, Comb) {
 
 TEST(PolygonTriangulation, Spiral) {
   Polygon polygon;
-  for (int i = 0; i <= 60; ++i) polygon.emplace_back((1 + 0.1 * i) * std::cos(0.2 * i), (1 + 0.1 * i) * std::sin(0.2 * i));
-  for (int i = 60; i >= 0; --i) polygon.emplace_back((2 + 0.1 * i) * std::cos(0.2 * i), (2 + 0.1 * i) * std::sin(0.2 * i));
+  for (int i = 0; i <= 60; ++i)
+    polygon.emplace_back((1 + 0.1 * i) * std::cos(0.2 * i), (1 + 0.1 * i) * std::sin(0.2 * i));
+  for (int i = 60; i >= 0; --i)
+    polygon.emplace_back((2 + 0.1 * i) * std::cos(0.2 * i), (2 + 0.1 * i) * std::sin(0.2 * i));
   if (signed_area(polygon) < 0) std::reverse(polygon.begin(), polygon.end());
   ASSERT_TRUE(is_simple(polygon));
   const std::vector<Triangle> triangles = triangulate_polygon(polygon);
@@ -182,7 +186,8 @@ TEST(PolygonTriangulation, PolygonsThatAreNotSimpleAreErrors) {
   for (const Polygon& polygon : polygons) {
     try {
       const std::vector<Triangle> triangles = triangulate_polygon(polygon);
-      ADD_FAILURE() << "a polygon of " << polygon.size() << " points gave " << triangles.size() << " triangles";
+      ADD_FAILURE() << "a polygon of " << polygon.size() << " points gave " << triangles.size()
+                    << " triangles";
     } catch (const CompletionError& error) {
       EXPECT_EQ(error.stage(), "triangulating the unfolded rim");
     }
