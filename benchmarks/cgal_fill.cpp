@@ -2,8 +2,8 @@
 //
 //   cgal_fill IN OUT.ply
 //
-// CGAL fills holes of orientable 2-manifold meshes only, so that the input is first oriented, and split at vertices and
-// edges that are not manifold, by CGAL's own tools.
+// CGAL fills holes of orientable 2-manifold meshes only, so that the input is first oriented, and split at
+// vertices and edges that are not manifold, by CGAL's own tools.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>

@@ -1,5 +1,6 @@
-// Prints how hole filling by curve unfolding fares from the mesh to the patch: holes of the sizes of the paper's table 1,
-// its model with eight holes, long holes, and a large mesh. `unfolding_benchmark` looks at the unfolding alone.
+// Prints how hole filling by curve unfolding fares from the mesh to the patch: holes of the sizes of the
+// paper's table 1, its model with eight holes, long holes, and a large mesh. `unfolding_benchmark` looks at
+// the unfolding alone.
 //
 //   curve_unfolding_benchmark [table|eight|long|large]...      without arguments: all
 
@@ -64,8 +65,8 @@ TriangleMesh ball_with_winding_hole(int subdivisions, std::uint32_t seed) {
   });
 }
 
-/// The first such ball with one hole, of that many vertices, that no fitted plane shows as a simple polygon: in the finest
-/// ball in which one turns up. The paper's models are not to be had; their sizes are.
+/// The first such ball with one hole, of that many vertices, that no fitted plane shows as a simple polygon:
+/// in the finest ball in which one turns up. The paper's models are not to be had; their sizes are.
 std::optional<TriangleMesh> strongly_curved(int subdivisions, std::size_t size) {
   for (std::uint32_t seed = 1; seed < 1500; ++seed) {
     TriangleMesh mesh = ball_with_winding_hole(subdivisions, seed);
@@ -95,8 +96,8 @@ TriangleMesh five_holes() {
   }
 }
 
-/// A gap between two walls that runs nearly round a circle, `width` edges wide, in waves; `half_turns`: the gap turns
-/// about its middle line that often. As many faces are needed to close it as its rim is long.
+/// A gap between two walls that runs nearly round a circle, `width` edges wide, in waves; `half_turns`: the
+/// gap turns about its middle line that often. As many faces are needed to close it as its rim is long.
 TriangleMesh long_gap(int size, int half_turns) {
   constexpr int width = 6;
   const int side = size / 2 - width;
@@ -125,7 +126,8 @@ TriangleMesh long_gap(int size, int half_turns) {
 struct Sample {
   bool closed = false;  ///< every hole
   bool gave_up = false;
-  double restarts = 0, steps = 0, unfolding = 0, embedding = 0, checking = 0, wall = 0;  ///< of all holes together
+  double restarts = 0, steps = 0, unfolding = 0, embedding = 0, checking = 0,
+         wall = 0;  ///< of all holes together
   std::size_t faces = 0;
   std::set<std::string> routes;
 };
@@ -136,10 +138,9 @@ Sample run(const TriangleMesh& mesh, const CurveUnfoldingOptions& options,
   Sample sample;
   const Clock::time_point start = Clock::now();
   try {
-    const CurveUnfoldingResult result =
-        fill_by_curve_unfolding(mesh, selection, options, Progress([&](double, const std::string&) {
-                                  return seconds_since(start) < patience;
-                                }));
+    const CurveUnfoldingResult result = fill_by_curve_unfolding(
+        mesh, selection, options,
+        Progress([&](double, const std::string&) { return seconds_since(start) < patience; }));
     for (const HoleTimes& times : result.times) {
       sample.restarts += times.restarts;
       sample.steps += static_cast<double>(times.steps);
@@ -151,7 +152,8 @@ Sample run(const TriangleMesh& mesh, const CurveUnfoldingOptions& options,
     sample.closed = report.count(HoleOutcome::failed) == 0 && report.count(HoleOutcome::closed) > 0;
     sample.faces = result.completion.patch.triangles.size();
     for (const HoleReport& hole : report.holes)
-      if (hole.outcome != HoleOutcome::skipped) sample.routes.insert(hole.route.empty() ? hole.reason : hole.route);
+      if (hole.outcome != HoleOutcome::skipped)
+        sample.routes.insert(hole.route.empty() ? hole.reason : hole.route);
   } catch (const Cancelled&) {
     sample.gave_up = true;
   }
@@ -169,7 +171,7 @@ struct Spread {
   double mean = 0, deviation = 0;
 };
 
-Spread spread(const std::vector<Sample>& samples, double Sample::* value) {
+Spread spread(const std::vector<Sample>& samples, double Sample::*value) {
   Spread s;
   const double n = static_cast<double>(samples.size());
   for (const Sample& sample : samples) s.mean += sample.*value / n;
@@ -202,18 +204,22 @@ void table_line(const char* model, const TriangleMesh& mesh) {
   const auto closed = [](const std::vector<Sample>& samples) {
     return std::count_if(samples.begin(), samples.end(), [](const Sample& s) { return s.closed; });
   };
-  std::printf("| %s | %zu | %zu | %.1f ± %.1f | %.0f ± %.0f | %.3f ± %.3f | %ld | %.3f | %ld | %.3f | %.4f | %.3f | %s |\n",
-              model, mesh.vertices.size(), rim, restarts.mean * per_hole, restarts.deviation * per_hole, steps.mean,
-              steps.deviation, unfolding.mean, unfolding.deviation, static_cast<long>(closed(membrane)),
-              spread(membrane, &Sample::embedding).mean, static_cast<long>(closed(thin_plate)),
-              spread(thin_plate, &Sample::embedding).mean, ours.unfolding, ours.embedding, joined(ours.routes).c_str());
+  std::printf(
+      "| %s | %zu | %zu | %.1f ± %.1f | %.0f ± %.0f | %.3f ± %.3f | %ld | %.3f | %ld | %.3f | %.4f | %.3f | "
+      "%s |\n",
+      model, mesh.vertices.size(), rim, restarts.mean * per_hole, restarts.deviation * per_hole, steps.mean,
+      steps.deviation, unfolding.mean, unfolding.deviation, static_cast<long>(closed(membrane)),
+      spread(membrane, &Sample::embedding).mean, static_cast<long>(closed(thin_plate)),
+      spread(thin_plate, &Sample::embedding).mean, ours.unfolding, ours.embedding,
+      joined(ours.routes).c_str());
 }
 
 void table_one() {
-  std::printf("\nTen seeds of the annealing, and the default; seconds; the paper's d is the restarts per hole\n\n"
-              "| model | n | m | restarts | steps | annealing | membrane closed | embedding | thin plate closed "
-              "| embedding | default: unfolding | embedding | route |\n"
-              "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n");
+  std::printf(
+      "\nTen seeds of the annealing, and the default; seconds; the paper's d is the restarts per hole\n\n"
+      "| model | n | m | restarts | steps | annealing | membrane closed | embedding | thin plate closed "
+      "| embedding | default: unfolding | embedding | route |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n");
   table_line("five holes", five_holes());
   for (const std::size_t size : {35, 33, 53, 63}) {
     const std::optional<TriangleMesh> mesh = strongly_curved(3, size);
@@ -230,24 +236,27 @@ void eight_holes() {
     model = test::join(model, test::translated(*ball, Vector3(3.0 * static_cast<double>(holes++), 0, 0)));
     rim += size;
   }
-  std::printf("\n%zu strongly curved holes, %zu rim vertices, mesh of %zu vertices\n\n"
-              "| unfolding by | seconds unfolding | embedding | checking | filter | faces | all closed |\n"
-              "|---|---:|---:|---:|---:|---:|---|\n",
-              holes, rim, model.vertices.size());
+  std::printf(
+      "\n%zu strongly curved holes, %zu rim vertices, mesh of %zu vertices\n\n"
+      "| unfolding by | seconds unfolding | embedding | checking | filter | faces | all closed |\n"
+      "|---|---:|---:|---:|---:|---:|---|\n",
+      holes, rim, model.vertices.size());
   for (const UnfoldMethod method : {UnfoldMethod::automatic, UnfoldMethod::annealing}) {
     CurveUnfoldingOptions options;
     options.unfolding.method = method;
     const Sample sample = run(model, options);
     std::printf("| %s | %.3f | %.3f | %.3f | %.3f | %zu | %s |\n",
-                method == UnfoldMethod::automatic ? "default" : "annealing", sample.unfolding, sample.embedding,
-                sample.checking, sample.wall, sample.faces, sample.closed ? "yes" : joined(sample.routes).c_str());
+                method == UnfoldMethod::automatic ? "default" : "annealing", sample.unfolding,
+                sample.embedding, sample.checking, sample.wall, sample.faces,
+                sample.closed ? "yes" : joined(sample.routes).c_str());
   }
 }
 
 void long_holes() {
-  std::printf("\nLong holes, seconds\n\n"
-              "| hole | m | unfolding | embedding | checking | filter | faces | route |\n"
-              "|---|---:|---:|---:|---:|---:|---:|---|\n");
+  std::printf(
+      "\nLong holes, seconds\n\n"
+      "| hole | m | unfolding | embedding | checking | filter | faces | route |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---|\n");
   for (const int half_turns : {0, 5}) {
     std::vector<double> sizes, seconds;
     for (const int size : {500, 2000, 10000}) {
@@ -258,8 +267,9 @@ void long_holes() {
       selection.vertices.assign(mesh.vertices.size(), false);
       std::fill_n(selection.vertices.begin(), size, true);
       const Sample sample = run(mesh, options, selection);
-      std::printf("| %s | %d | %.3f | %.3f | %.3f | %.3f | %zu | %s |\n", half_turns == 0 ? "wavy" : "twisted", size,
-                  sample.unfolding, sample.embedding, sample.checking, sample.wall, sample.faces,
+      std::printf("| %s | %d | %.3f | %.3f | %.3f | %.3f | %zu | %s |\n",
+                  half_turns == 0 ? "wavy" : "twisted", size, sample.unfolding, sample.embedding,
+                  sample.checking, sample.wall, sample.faces,
                   sample.gave_up ? "given up" : joined(sample.routes).c_str());
       if (!sample.gave_up) sizes.push_back(size), seconds.push_back(sample.wall);
     }
@@ -272,8 +282,8 @@ void long_holes() {
 void large_mesh() {
   const TriangleMesh mesh = test::sphere_with_holes(6, 8, 0.05);
   const Sample sample = run(mesh, CurveUnfoldingOptions());
-  std::printf("\nmesh of %zu faces with 6 holes: %.3f s, %zu faces added, %s\n", mesh.triangles.size(), sample.wall,
-              sample.faces, sample.closed ? "all closed" : joined(sample.routes).c_str());
+  std::printf("\nmesh of %zu faces with 6 holes: %.3f s, %zu faces added, %s\n", mesh.triangles.size(),
+              sample.wall, sample.faces, sample.closed ? "all closed" : joined(sample.routes).c_str());
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 // Compares a mesh with holes with what a program made of it, whichever program that was.
 //
-//   measure_completion prepare IN OUT.ply             the mesh as binary PLY with triangles; prints what it is like
-//   measure_completion measure INPUT.ply OUTPUT       prints what became of the holes and how good the new faces are
-//   measure_completion picture INPUT.ply OUTPUT P.ply writes the mesh to look at: new faces in orange, those that
+//   measure_completion prepare IN OUT.ply             the mesh as binary PLY with triangles; prints what it
+//   is like measure_completion measure INPUT.ply OUTPUT       prints what became of the holes and how good
+//   the new faces are measure_completion picture INPUT.ply OUTPUT P.ply writes the mesh to look at: new faces
+//   in orange, those that
 //                                                     intersect something in red
 //
-// Everything is printed as one JSON object. Vertices and faces are recognised by their positions, bit for bit: nothing
-// is taken from what the program says about itself.
+// Everything is printed as one JSON object. Vertices and faces are recognised by their positions, bit for
+// bit: nothing is taken from what the program says about itself.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,8 @@ class Record {
   std::string text_;
 };
 
-/// Numbers positions: vertices at the same place, bit for bit, get the same number (-0 and 0 are the same place).
+/// Numbers positions: vertices at the same place, bit for bit, get the same number (-0 and 0 are the same
+/// place).
 class Places {
  public:
   std::vector<Index> number(const TriangleMesh& mesh) {
@@ -97,7 +99,9 @@ bool is_sheet(const BoundaryLoop& loop) {
 
 Vector3 normal(const Corners& c) { return (c[1] - c[0]).cross(c[2] - c[0]); }
 
-double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) * degrees; }
+double angle_between(const Vector3& a, const Vector3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * degrees;
+}
 
 double smallest_angle(const Corners& c) {
   double least = 180;
@@ -151,7 +155,9 @@ class Comparison {
       picture.triangles.push_back({first, first + 1, first + 2});
       for (const Vector3& corner : corners_[f]) {
         picture.vertices.push_back(corner);
-        colours.push_back(!new_[f] ? Colour{235, 236, 240} : bad_[f] ? Colour{240, 30, 30} : Colour{255, 180, 60});
+        colours.push_back(!new_[f]  ? Colour{235, 236, 240}
+                          : bad_[f] ? Colour{240, 30, 30}
+                                    : Colour{255, 180, 60});
       }
     }
     meshcomplete::benchmarks::write_ply(path, picture, colours);
@@ -215,7 +221,8 @@ class Comparison {
     };
     for (Index h = 0; h < topology_.opposite.size(); ++h) {
       const Index other = topology_.opposite[h];
-      if (other < topology_.opposite.size() && new_[h / 3] && new_[other / 3]) root[find(h / 3)] = find(other / 3);
+      if (other < topology_.opposite.size() && new_[h / 3] && new_[other / 3])
+        root[find(h / 3)] = find(other / 3);
     }
     for (std::size_t f = 0; f < root.size(); ++f) root[f] = find(f);
     return root;
@@ -231,7 +238,9 @@ class Comparison {
   };
   using EdgeStates = std::map<std::pair<Index, Index>, EdgeState>;
 
-  bool kept_its_number(Index v) const { return v < input_places_.size() && input_places_[v] == output_places_[v]; }
+  bool kept_its_number(Index v) const {
+    return v < input_places_.size() && input_places_[v] == output_places_[v];
+  }
 
   void add_holes(Record& record) const {
     const std::vector<std::size_t> piece = pieces();
@@ -304,7 +313,8 @@ class Comparison {
         if (at_seam[a] || at_seam[b]) edge_at_seam.include(length);
       } else if (!new_[f] && !new_[g]) {
         if (in_ring(f) || in_ring(g)) ring_edge.include(length);
-        if (in_ring(f) && in_ring(g)) ring_jump.include(angle_between(normal(corners_[f]), normal(corners_[g])));
+        if (in_ring(f) && in_ring(g))
+          ring_jump.include(angle_between(normal(corners_[f]), normal(corners_[g])));
       } else {
         ring_edge.include(length);
       }
@@ -318,7 +328,8 @@ class Comparison {
     record.add("faces_added", added);
     record.add("worst_angle", added == 0 ? std::nan("") : worst);
     record.add("mean_smallest_angle", smallest.value());
-    record.add("longest_edge_ratio", inner_edge.count == 0 ? std::nan("") : inner_edge.greatest / ring_edge.value());
+    record.add("longest_edge_ratio",
+               inner_edge.count == 0 ? std::nan("") : inner_edge.greatest / ring_edge.value());
     record.add("edge_ratio", inner_edge.value() / ring_edge.value());
     record.add("edge_ratio_at_seam", edge_at_seam.value() / ring_edge.value());
     record.add("normal_jump_at_seam", jump.value());
@@ -369,9 +380,10 @@ int run(int argc, char** argv) {
     Comparison(meshcomplete::benchmarks::read_mesh(argv[2]), meshcomplete::benchmarks::read_mesh(argv[3]))
         .write_picture(argv[4]);
   } else {
-    std::fprintf(stderr,
-                 "usage: measure_completion prepare IN OUT.ply | measure INPUT.ply OUTPUT | picture INPUT.ply OUTPUT "
-                 "PICTURE.ply\n");
+    std::fprintf(
+        stderr,
+        "usage: measure_completion prepare IN OUT.ply | measure INPUT.ply OUTPUT | picture INPUT.ply OUTPUT "
+        "PICTURE.ply\n");
     return 2;
   }
   return 0;

@@ -28,7 +28,8 @@ void put(std::ofstream& file, T value) {
 TriangleMesh read_mesh(const std::string& path) {
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
-  if (!CGAL::IO::read_polygon_soup(path, points, polygons)) throw std::runtime_error(path + " cannot be read");
+  if (!CGAL::IO::read_polygon_soup(path, points, polygons))
+    throw std::runtime_error(path + " cannot be read");
   if (is_stl(path)) CGAL::Polygon_mesh_processing::merge_duplicate_points_in_polygon_soup(points, polygons);
   TriangleMesh mesh;
   mesh.vertices.reserve(points.size());
@@ -36,7 +37,8 @@ TriangleMesh read_mesh(const std::string& path) {
     mesh.vertices.push_back(Vector3(p.x(), p.y(), p.z()).cast<float>().cast<double>());
   for (const std::vector<std::size_t>& polygon : polygons) {
     for (std::size_t corner : polygon)
-      if (corner >= points.size()) throw std::runtime_error(path + " has a face with a corner that does not exist");
+      if (corner >= points.size())
+        throw std::runtime_error(path + " has a face with a corner that does not exist");
     for (std::size_t k = 2; k < polygon.size(); ++k)
       mesh.triangles.push_back({static_cast<Index>(polygon[0]), static_cast<Index>(polygon[k - 1]),
                                 static_cast<Index>(polygon[k])});
@@ -49,7 +51,8 @@ void write_ply(const std::string& path, const TriangleMesh& mesh, const std::vec
   file << "ply\nformat binary_little_endian 1.0\nelement vertex " << mesh.vertices.size()
        << "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!colours.empty()) file << "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  file << "element face " << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+  file << "element face " << mesh.triangles.size()
+       << "\nproperty list uchar int vertex_indices\nend_header\n";
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     for (int k = 0; k < 3; ++k) put(file, static_cast<float>(mesh.vertices[i][k]));
     if (!colours.empty())

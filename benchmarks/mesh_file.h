@@ -1,20 +1,20 @@
-// Reading and writing mesh files for the comparison, without MeshLab: the checker must not share the readers of the
-// programs that it checks.
+// Reading and writing mesh files for the comparison, without MeshLab: the checker must not share the readers
+// of the programs that it checks.
 #pragma once
-
-#include "common/core/mesh.h"
 
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "common/core/mesh.h"
+
 namespace meshcomplete {
 namespace benchmarks {
 
-/// Reads OFF, OBJ, PLY or STL. Coordinates are rounded to floats, which is what every program here works on; polygons
-/// become fans; vertices keep their order, except in STL, whose corners at equal positions are merged. Throws
-/// std::runtime_error.
+/// Reads OFF, OBJ, PLY or STL. Coordinates are rounded to floats, which is what every program here works on;
+/// polygons become fans; vertices keep their order, except in STL, whose corners at equal positions are
+/// merged. Throws std::runtime_error.
 TriangleMesh read_mesh(const std::string& path);
 
 using Colour = std::array<std::uint8_t, 3>;

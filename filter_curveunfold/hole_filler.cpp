@@ -67,6 +67,14 @@ std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   return list;
 }
 
+// Of a closed polygon.
+template <class Points>
+double length(const Points& points) {
+  double sum = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) sum += (points[i] - points[(i + 1) % points.size()]).norm();
+  return sum;
+}
+
 std::string unfolding_name(UnfoldOutcome outcome) {
   switch (outcome) {
     case UnfoldOutcome::projected: return "projected";
@@ -110,6 +118,7 @@ class HoleFiller {
   const bool pinched_;
   OpenedRim opened_;  // what is unfolded and filled
   Unfolding unfolding_;
+  std::optional<std::pair<bool, double>> unfolded_;  // stretched, flap height: what `result_.flat` belongs to
   FilledHole result_;
   bool relaxed_ = false;
   int untanglings_ = 0;
@@ -118,6 +127,10 @@ class HoleFiller {
 
 // Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is none yet.
 bool HoleFiller::unfold_rim(const Try& plan) {
+  const std::pair wanted(plan.stretched, plan.flap_height);
+  if (unfolded_ == wanted) return !result_.flat.empty();
+  unfolded_ = wanted;
+  result_.flat.clear();
   opened_ = open_pinches(rim_, plan.flap_height);
   UnfoldOptions options = context_.options.unfolding;
   options.stretch = plan.stretched;
@@ -132,6 +145,8 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   const auto start = Clock::now();
   unfolding_ = std::move(unfolding);
   result_.polygon = unfolding_.polygon;
+  const double scale = length(opened_.rim.positions) / length(result_.polygon);
+  for (Eigen::Vector2d& p : result_.polygon) p *= scale;
   result_.flat = triangulate_polygon(unfolding_.polygon);
   result_.times.embedding += seconds_since(start);
   return true;
@@ -209,7 +224,8 @@ std::string HoleFiller::attempt(const Try& plan) {
     if (plain)
       relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
     else
-      untangle(embedded, tangled, context_.neighbourhood, obstacles_, stalled, untangling_rounds, progress_);
+      untangle(embedded, tangled, context_.neighbourhood, obstacles_, opened_.rim.forbidden, stalled, untangling_rounds,
+               progress_);
     result_.times.embedding += seconds_since(start);
   }
 }
@@ -234,30 +250,24 @@ FilledHole HoleFiller::fill() {
                      "them first";
     return std::move(result_);
   }
-  std::optional<std::pair<bool, double>> unfolded;  // stretched, flap height: what `result_.flat` belongs to
   int count = 0;
   for (const Try& plan : tries(context_.options, pinched_)) {
     progress_.check();
     if (plan.resolution > 1 && triangles_ > most_triangles_to_refine) continue;
-    if (unfolded != std::pair(plan.stretched, plan.flap_height)) {
-      unfolded = {plan.stretched, plan.flap_height};
-      result_.flat.clear();
-      if (!unfold_rim(plan)) continue;
-    }
-    if (result_.flat.empty()) continue;
-    ++count;
     std::string defect;
     try {
+      if (!unfold_rim(plan)) continue;
+      ++count;
       defect = attempt(plan);
-      if (defect.empty()) {
-        result_.reason.clear();
-        result_.route = route(plan, count);
-        return std::move(result_);
-      }
     } catch (const Cancelled&) {
       throw;
     } catch (const CompletionError& error) {
       defect = error.what();
+    }
+    if (defect.empty()) {
+      result_.reason.clear();
+      result_.route = route(plan, count);
+      break;
     }
     if (result_.reason.empty()) result_.reason = defect;
   }

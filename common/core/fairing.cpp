@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace meshcomplete {
@@ -134,7 +135,7 @@ void set_free(TriangleMesh& surface, const Numbering& numbering, const Coordinat
 
 void factorize(Cholesky& solver, const SparseMatrix& matrix) {
   solver.compute(matrix);
-  if (solver.info() != Eigen::Success || (solver.vectorD().array() <= 0).any())
+  if (solver.info() != Eigen::Success || !(solver.vectorD().array() > 0).all())
     throw CompletionError(stage, "The equations of the minimum-energy surface have no unique solution.");
 }
 
@@ -277,6 +278,25 @@ void minimize_normal_variation(TriangleMesh& surface, const std::vector<char>& f
   }
 }
 
+// Rounding can keep the pivots of a singular system positive, so that its cause has to be looked for.
+void expect_anchored(const TriangleMesh& surface, const std::vector<char>& fixed) {
+  std::vector<Index> parent(fixed.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : surface.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::vector<char> anchored(fixed.size(), 0);
+  for (Index v = 0; v < fixed.size(); ++v)
+    if (fixed[v]) anchored[root(v)] = 1;
+  for (Index v = 0; v < fixed.size(); ++v)
+    if (!anchored[root(v)]) throw CompletionError(stage, "A piece of the surface is joined to nothing that holds it.");
+}
+
 }  // namespace
 
 const char* name(SurfaceEnergy energy) {
@@ -292,6 +312,7 @@ void minimize_energy(TriangleMesh& surface, const std::vector<char>& fixed, Surf
                      LaplacianWeights weights, const Progress& progress) {
   const Numbering numbering(fixed);
   if (numbering.free_vertices.empty()) return;
+  expect_anchored(surface, fixed);
   // Centre and unit size: the masses' units and the rounding of far-away coordinates drop out of the equations.
   Eigen::AlignedBox3d box;
   for (const Vector3& p : surface.vertices) box.extend(p);

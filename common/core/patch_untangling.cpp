@@ -45,10 +45,12 @@ struct Box {
 
 class Untangler {
  public:
-  Untangler(PatchMesh& patch, const InputNeighbourhood& input, const std::vector<Corners>& obstacles)
-      : patch_(patch), input_(input), directions_(directions()) {
-    Box all(corners(0));
-    for (Index t = 0; t < patch.triangle_count(); ++t) all.extend(Box(corners(t)));
+  Untangler(PatchMesh& patch, const InputNeighbourhood& input, const std::vector<Corners>& obstacles,
+            const ForbiddenEdges& forbidden)
+      : patch_(patch), input_(input), forbidden_(forbidden), directions_(directions()) {
+    Box all({patch.position(0), patch.position(0), patch.position(0)});
+    for (Index t = 0; t < patch.triangle_count(); ++t)
+      if (patch.alive(t)) all.extend(Box(corners(t)));
     all.widen((all.high - all.low).maxCoeff());
     for (const Corners& c : obstacles)
       if (all.meets(Box(c))) obstacles_.push_back(c);
@@ -58,6 +60,7 @@ class Untangler {
 
   std::vector<Index> movable_vertices(const std::vector<Index>& tangled, int rings);
   bool improve(Index vertex);
+  bool improve_by_flips(Index triangle);
 
  private:
   Corners corners(Index triangle) const {
@@ -65,14 +68,16 @@ class Untangler {
     return {patch_.position(t[0]), patch_.position(t[1]), patch_.position(t[2])};
   }
   double mean_edge(Index vertex) const;
-  void collect_nearby(Index vertex, double reach);
+  void collect_nearby(double reach);
+  bool can_flip(Index half_edge) const;
   std::size_t cost(std::size_t give_up_at) const;
 
   PatchMesh& patch_;
   const InputNeighbourhood& input_;
+  const ForbiddenEdges& forbidden_;
   std::vector<Corners> obstacles_;  // those that the patch could reach
   const std::vector<Vector3> directions_;
-  std::vector<Index> star_;       // triangles of the vertex at hand
+  std::vector<Index> star_;       // the triangles at hand: round a vertex, or at the two sides of an edge
   std::vector<Corners> nearby_;   // other triangles of the patch, and obstacles, that the star can reach
 };
 
@@ -119,10 +124,8 @@ double Untangler::mean_edge(Index vertex) const {
   return sum / count;
 }
 
-void Untangler::collect_nearby(Index vertex, double reach) {
-  star_.clear();
+void Untangler::collect_nearby(double reach) {
   nearby_.clear();
-  patch_.for_outgoing(vertex, [&](Index h) { star_.push_back(h / 3); });
   Box box(corners(star_.front()));
   for (Index t : star_) box.extend(Box(corners(t)));
   box.widen(reach);
@@ -161,7 +164,9 @@ std::size_t Untangler::cost(std::size_t give_up_at) const {
 bool Untangler::improve(Index vertex) {
   const double edge = mean_edge(vertex);
   if (!(edge > 0)) return false;
-  collect_nearby(vertex, edge * distances.back());
+  star_.clear();
+  patch_.for_outgoing(vertex, [&](Index h) { star_.push_back(h / 3); });
+  collect_nearby(edge * distances.back());
   const Vector3 start = patch_.position(vertex);
   Vector3 best = start;
   std::size_t least = cost(10 * degenerate_cost);
@@ -181,11 +186,35 @@ bool Untangler::improve(Index vertex) {
   return best != start;
 }
 
+bool Untangler::can_flip(Index h) const {
+  if (patch_.is_boundary(h)) return false;
+  const Index c = patch_.apex(h), d = patch_.apex(patch_.opposite(h));
+  const std::pair<Index, Index> pair(std::min(c, d), std::max(c, d));
+  return c != d && !patch_.joined(c, d) && !std::binary_search(forbidden_.begin(), forbidden_.end(), pair);
+}
+
+// Flips an edge of the triangle when that makes it and its neighbour meet fewer triangles.
+bool Untangler::improve_by_flips(Index triangle) {
+  for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
+    if (!can_flip(h)) continue;
+    star_ = {triangle, patch_.opposite(h) / 3};
+    collect_nearby(0.0);
+    const std::size_t before = cost(10 * degenerate_cost);
+    if (before == 0) continue;
+    patch_.flip(h);
+    if (cost(before) < before) return true;
+    // The new diagonal is the first half-edge of both triangles; flipping it brings the old one back.
+    patch_.flip(3 * triangle);
+  }
+  return false;
+}
+
 }  // namespace
 
 std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const InputNeighbourhood& input,
-                     const std::vector<Corners>& obstacles, int rings, int rounds, const Progress& progress) {
-  Untangler untangler(patch, input, obstacles);
+                     const std::vector<Corners>& obstacles, const ForbiddenEdges& forbidden, int rings, int rounds,
+                     const Progress& progress) {
+  Untangler untangler(patch, input, obstacles, forbidden);
   const std::vector<Index> vertices = untangler.movable_vertices(tangled, rings);
   std::size_t moved = 0;
   for (int round = 0; round < rounds; ++round) {
@@ -194,6 +223,7 @@ std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const 
       now += untangler.improve(v);
       progress.check();
     }
+    for (Index t : tangled) now += untangler.improve_by_flips(t);
     moved += now;
     if (now == 0) break;
   }

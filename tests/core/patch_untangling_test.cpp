@@ -97,7 +97,7 @@ class PatchUntangling : public ::testing::Test {
     std::vector<Index> triangles = tangled.patch_triangles;
     std::size_t moved = 0;
     for (int i = 0; i < 5 && !triangles.empty(); ++i) {
-      moved += untangle(patch_, triangles, input_, {}, i / 2, 3);
+      moved += untangle(patch_, triangles, input_, {}, {}, i / 2, 3);
       triangles = check().patch_triangles;
     }
     EXPECT_TRUE(check().passed()) << describe(check().defect);
@@ -118,7 +118,7 @@ class PatchUntangling : public ::testing::Test {
 
 TEST_F(PatchUntangling, TheLidIsCleanAtFirst) {
   EXPECT_TRUE(check().passed()) << describe(check().defect);
-  EXPECT_EQ(untangle(patch_, {}, input_, {}, 1, 3), 0u);
+  EXPECT_EQ(untangle(patch_, {}, input_, {}, {}, 1, 3), 0u);
 }
 
 TEST_F(PatchUntangling, AVertexThroughTheInput) {
@@ -161,7 +161,7 @@ TEST_F(PatchUntangling, ObstaclesAreKeptClearOf) {
     return list;
   };
   ASSERT_FALSE(tangled().empty());
-  for (int i = 0; i < 5 && !tangled().empty(); ++i) untangle(patch_, tangled(), input_, spike, i / 2, 3);
+  for (int i = 0; i < 5 && !tangled().empty(); ++i) untangle(patch_, tangled(), input_, spike, {}, i / 2, 3);
   EXPECT_TRUE(tangled().empty());
   EXPECT_TRUE(check().passed());
 }
@@ -173,7 +173,7 @@ TEST(PatchUntanglingOnARim, TrianglesWithoutAnInnerVertexGetOne) {
   const TriangleMesh nothing;
   const std::vector<Corners> spike = {{Vector3(2, 1.5, 0.3), Vector3(2.1, 1.5, -1), Vector3(1.9, 1.6, -1)}};
   const InputNeighbourhood input(nothing);
-  const std::size_t moved = untangle(patch, {0}, input, spike, 0, 5);
+  const std::size_t moved = untangle(patch, {0}, input, spike, {}, 0, 5);
   EXPECT_EQ(patch.vertex_count(), 5u);
   EXPECT_GT(moved, 0u);
   std::vector<Corners> triangles;
@@ -189,7 +189,7 @@ TEST(PatchUntanglingOnARim, ALoneTriangleIsSplitInThree) {
   PatchMesh patch({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, 3, {{0, 1, 2}});
   const TriangleMesh nothing;
   const std::vector<Corners> spike = {{Vector3(1, 1, 0.3), Vector3(1.1, 1, -1), Vector3(0.9, 1.1, -1)}};
-  untangle(patch, {0}, InputNeighbourhood(nothing), spike, 0, 5);
+  untangle(patch, {0}, InputNeighbourhood(nothing), spike, {}, 0, 5);
   ASSERT_EQ(patch.vertex_count(), 4u);
   ASSERT_EQ(patch.triangle_count(), 3u);
   std::vector<Corners> triangles;
@@ -202,14 +202,14 @@ TEST_F(PatchUntangling, NoRoundsOnlyRound) {
   const Index poked = vertex_near(Vector3(4, 4, 0));
   patch_.move(poked, patch_.position(poked) - Vector3(0, 0, 0.8));
   const std::vector<Vector3> before = patch_.positions();
-  EXPECT_EQ(untangle(patch_, check().patch_triangles, input_, {}, 0, 0), 0u);
+  EXPECT_EQ(untangle(patch_, check().patch_triangles, input_, {}, {}, 0, 0), 0u);
   for (Index v = 0; v < before.size(); ++v) EXPECT_EQ(patch_.position(v), as_stored(before[v]));
 }
 
 TEST_F(PatchUntangling, CanBeCancelled) {
   const Index poked = vertex_near(Vector3(4, 4, 0));
   patch_.move(poked, patch_.position(poked) - Vector3(0, 0, 0.8));
-  EXPECT_THROW(untangle(patch_, check().patch_triangles, input_, {}, 0, 3,
+  EXPECT_THROW(untangle(patch_, check().patch_triangles, input_, {}, {}, 0, 3,
                         Progress([](double, const std::string&) { return false; })),
                Cancelled);
 }

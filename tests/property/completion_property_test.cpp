@@ -1,5 +1,5 @@
-// What must hold for every mesh: the input is left alone, patches are sound, and the answer does not depend on where the
-// mesh lies, how its elements are numbered or how many threads there are.
+// What must hold for every mesh: the input is left alone, patches are sound, and the answer does not depend
+// on where the mesh lies, how its elements are numbered or how many threads there are.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -57,8 +57,8 @@ TriangleMesh wavy_collar() {
   return test::collar(rim, outer);
 }
 
-/// Two pairs of faces that touch at two vertices. The only patch for either of them joins these vertices, so that a patch
-/// for each would make an edge with four faces.
+/// Two pairs of faces that touch at two vertices. The only patch for either of them joins these vertices, so
+/// that a patch for each would make an edge with four faces.
 TriangleMesh two_tents() {
   return {{Vector3(-1, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 1), Vector3(0, 1, -1), Vector3(0, -1, 1),
            Vector3(0, -1, -1)},
@@ -96,8 +96,13 @@ const std::vector<Family>& families() {
       {"moebius_strip", [] { return test::moebius_strip(); }, 0},
       {"isolated_triangle", [] { return test::isolated_triangle(); }, 0},
       {"unwelded", [] { return test::unwelded(test::sphere_with_hole(1)); }, 0},
-      {"far_from_origin", [] { return test::translated(test::sphere_with_hole(), Vector3(1000, -500, 200)); }, 1},
-      {"no_faces", [] { return TriangleMesh{{Vector3(1, 2, 3)}, {}}; }, 0},
+      {"far_from_origin", [] { return test::translated(test::sphere_with_hole(), Vector3(1000, -500, 200)); },
+       1},
+      {"no_faces",
+       [] {
+         return TriangleMesh{{Vector3(1, 2, 3)}, {}};
+       },
+       0},
       {"nothing", [] { return TriangleMesh(); }, 0},
   };
   return list;
@@ -106,7 +111,8 @@ const std::vector<Family>& families() {
 // --- what is compared
 // ----------------------------------------------------------------------------------------------
 
-CurveUnfoldingResult fill(const TriangleMesh& mesh, const CurveUnfoldingOptions& options = CurveUnfoldingOptions(),
+CurveUnfoldingResult fill(const TriangleMesh& mesh,
+                          const CurveUnfoldingOptions& options = CurveUnfoldingOptions(),
                           const Progress& progress = Progress()) {
   return fill_by_curve_unfolding(mesh, MeshSelection(), options, progress);
 }
@@ -118,7 +124,8 @@ std::size_t closed_holes(const CurveUnfoldingResult& result) {
 std::string what_happened(const CurveUnfoldingResult& result) {
   std::string text;
   for (const HoleReport& hole : result.completion.report.holes)
-    text += std::to_string(hole.edges) + " edges: " + name(hole.outcome) + ", " + hole.route + hole.reason + "\n";
+    text +=
+        std::to_string(hole.edges) + " edges: " + name(hole.outcome) + ", " + hole.route + hole.reason + "\n";
   return text;
 }
 
@@ -126,13 +133,14 @@ bool same(const TriangleMesh& a, const TriangleMesh& b) {
   return a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-/// What became of each hole, whatever the order: edges, outcome, and why it was skipped. (Why the last try for a hole
-/// failed, after many others, may depend on the rounding.)
+/// What became of each hole, whatever the order: edges, outcome, and why it was skipped. (Why the last try
+/// for a hole failed, after many others, may depend on the rounding.)
 using Fate = std::tuple<std::size_t, HoleOutcome, std::string>;
 std::vector<Fate> fates(const CurveUnfoldingResult& result) {
   std::vector<Fate> list;
   for (const HoleReport& hole : result.completion.report.holes)
-    list.emplace_back(hole.edges, hole.outcome, hole.outcome == HoleOutcome::skipped ? hole.reason : std::string());
+    list.emplace_back(hole.edges, hole.outcome,
+                      hole.outcome == HoleOutcome::skipped ? hole.reason : std::string());
   std::sort(list.begin(), list.end());
   return list;
 }
@@ -285,7 +293,8 @@ TEST_P(CompletionInvariance, QuarterTurnsKeepEveryFate) {
 TEST_P(CompletionInvariance, NumberingDoesNotMatter) {
   const TriangleMesh mesh = GetParam().make();
   const CurveUnfoldingResult plain = fill(mesh);
-  for (const std::uint32_t seed : {1u, 2u}) EXPECT_EQ(fates(plain), fates(fill(test::shuffled(mesh, seed)))) << seed;
+  for (const std::uint32_t seed : {1u, 2u})
+    EXPECT_EQ(fates(plain), fates(fill(test::shuffled(mesh, seed)))) << seed;
 }
 
 // --- cancelling
