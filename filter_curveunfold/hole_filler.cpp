@@ -28,17 +28,21 @@ constexpr int plain_relaxations = 2;
 constexpr int most_relaxations = 8;
 constexpr int relaxation_sweeps = 10;
 constexpr int untangling_rounds = 3;
-// The bounds are per patch, but for the last one, which is for all tries of a hole together.
+// The bounds are per patch, but for the last one, which is for all tries with one flat triangulation together.
 constexpr std::size_t most_to_relax = 300;
 constexpr std::size_t most_to_untangle = 60;
 constexpr int most_untanglings = 10;
 
-// A patch of more triangles is not tried again at twice the resolution: its trouble is its shape.
+// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape.
 constexpr std::size_t most_triangles_to_refine = 5000;
+
+// Ways to the plane, each with another triangulation: what is asked for; descended even where a shorter way was found, so
+// that the rim develops as a whole; and opened further towards a convex polygon.
+enum class Way { asked, descended, stretched };
 
 // One way to close the hole.
 struct Try {
-  bool stretched;  // the second unfolding
+  Way way;
   SurfaceEnergy energy;
   double resolution;
   double flap_height;  // of the flaps that open a pinched rim
@@ -59,11 +63,13 @@ std::vector<SurfaceEnergy> energies(SurfaceEnergy asked) {
 std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   std::vector<Try> list;
   const std::vector<double> heights = pinched ? std::vector<double>{0.2, -0.2, 0.07, -0.07} : std::vector<double>{0.0};
-  for (bool stretched : {false, true})
+  for (Way way : {Way::asked, Way::descended, Way::stretched}) {
+    if (way == Way::descended && options.unfolding.method != UnfoldMethod::automatic) continue;
     for (double height : heights)
-      for (double resolution : {1.0, 2.0})
+      for (double resolution : {1.0, 1.25, 2.0})
         for (SurfaceEnergy energy : energies(options.energy))
-          list.push_back({stretched, energy, resolution, height});
+          list.push_back({way, energy, resolution, height});
+  }
   return list;
 }
 
@@ -118,7 +124,7 @@ class HoleFiller {
   const bool pinched_;
   OpenedRim opened_;  // what is unfolded and filled
   Unfolding unfolding_;
-  std::optional<std::pair<bool, double>> unfolded_;  // stretched, flap height: what `result_.flat` belongs to
+  std::optional<std::pair<Way, double>> unfolded_;  // way and flap height: what `result_.flat` belongs to
   FilledHole result_;
   bool relaxed_ = false;
   int untanglings_ = 0;
@@ -127,13 +133,15 @@ class HoleFiller {
 
 // Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is none yet.
 bool HoleFiller::unfold_rim(const Try& plan) {
-  const std::pair wanted(plan.stretched, plan.flap_height);
+  const std::pair wanted(plan.way, plan.flap_height);
   if (unfolded_ == wanted) return !result_.flat.empty();
   unfolded_ = wanted;
+  untanglings_ = 0;
   result_.flat.clear();
   opened_ = open_pinches(rim_, plan.flap_height);
   UnfoldOptions options = context_.options.unfolding;
-  options.stretch = plan.stretched;
+  options.stretch = plan.way == Way::stretched;
+  if (plan.way == Way::descended) options.method = UnfoldMethod::descent;
   Unfolding unfolding = unfold(opened_.rim.positions, options, progress_);
   result_.times.unfolding += unfolding.seconds;
   result_.times.restarts += unfolding.restarts;
@@ -233,7 +241,7 @@ std::string HoleFiller::attempt(const Try& plan) {
 std::string HoleFiller::route(const Try& plan, int count) const {
   std::string route = unfolding_name(unfolding_.outcome);
   if (pinched_) route = "opened where the rim touches itself, " + route;
-  if (plan.stretched) route += " and stretched";
+  if (plan.way == Way::stretched) route += " and stretched";
   route += std::string(", ") + name(plan.energy);
   if (plan.resolution > 1) route += ", finer";
   if (relaxed_) route += ", relaxed locally";
@@ -253,7 +261,7 @@ FilledHole HoleFiller::fill() {
   int count = 0;
   for (const Try& plan : tries(context_.options, pinched_)) {
     progress_.check();
-    if (plan.resolution > 1 && triangles_ > most_triangles_to_refine) continue;
+    if (plan.resolution > 1.5 && triangles_ > most_triangles_to_refine) continue;
     std::string defect;
     try {
       if (!unfold_rim(plan)) continue;

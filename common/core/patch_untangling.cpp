@@ -12,7 +12,10 @@ using Corners = std::array<Vector3, 3>;
 
 // Distances of the places that are tried, in mean edge lengths at the vertex: near ones first, so that a small disturbance
 // wins over a large one.
-constexpr std::array<double, 5> distances = {0.1, 0.2, 0.4, 0.7, 1.0};
+constexpr std::array<double, 7> distances = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
+
+// Places on the way from the middle of a side of the star to the vertex.
+constexpr std::array<double, 3> shares_of_the_way = {0.5, 0.25, 0.1};
 
 // What a degenerate triangle counts: more than any likely number of meetings.
 constexpr std::size_t degenerate_cost = 1000;
@@ -69,6 +72,7 @@ class Untangler {
   }
   double mean_edge(Index vertex) const;
   void collect_nearby(double reach);
+  std::vector<Vector3> places(Index vertex, double edge) const;
   bool can_flip(Index half_edge) const;
   std::size_t cost(std::size_t give_up_at) const;
 
@@ -97,7 +101,8 @@ std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled
       vertices.push_back(patch_.split(h, as_stored(middle)));
       any = true;
     }
-    if (!any) {
+    // A vertex of its own lets a triangle bulge round what it meets: the last resort, when moving its corners was no help.
+    if (!any || rings > 0) {
       const Corners c = corners(t);
       vertices.push_back(patch_.insert(t, as_stored((c[0] + c[1] + c[2]) / 3.0)));
     }
@@ -160,6 +165,21 @@ std::size_t Untangler::cost(std::size_t give_up_at) const {
   return sum;
 }
 
+// Where a vertex may go: all round it, and close to the sides of its star, for stars that wrap a curl of the rim.
+std::vector<Vector3> Untangler::places(Index vertex, double edge) const {
+  std::vector<Vector3> list;
+  const Vector3& here = patch_.position(vertex);
+  for (double distance : distances)
+    for (const Vector3& direction : directions_) list.push_back(as_stored(here + distance * edge * direction));
+  for (double share : shares_of_the_way)
+    for (Index t : star_) {
+      const Corners c = corners(t);
+      const Vector3 side = 0.5 * (c[0] + c[1] + c[2] - here);
+      list.push_back(as_stored(side + share * (here - side)));
+    }
+  return list;
+}
+
 // Tries places round the vertex and keeps the best; false when the vertex stays.
 bool Untangler::improve(Index vertex) {
   const double edge = mean_edge(vertex);
@@ -170,16 +190,13 @@ bool Untangler::improve(Index vertex) {
   const Vector3 start = patch_.position(vertex);
   Vector3 best = start;
   std::size_t least = cost(10 * degenerate_cost);
-  for (double distance : distances) {
-    for (const Vector3& direction : directions_) {
-      if (least == 0) break;
-      const Vector3 place = as_stored(start + distance * edge * direction);
-      patch_.move(vertex, place);
-      const std::size_t now = cost(least);
-      if (now < least) {
-        least = now;
-        best = place;
-      }
+  for (const Vector3& place : places(vertex, edge)) {
+    if (least == 0) break;
+    patch_.move(vertex, place);
+    const std::size_t now = cost(least);
+    if (now < least) {
+      least = now;
+      best = place;
     }
   }
   patch_.move(vertex, best);
