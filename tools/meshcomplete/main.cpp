@@ -100,7 +100,7 @@ int run_program(const Options& options) {
     return copy;
   };
   guard::set_ending([&](int exit_code, const QString& why) {
-    OutputSet::discard_all();
+    OutputSet::discard_for_good();
     write_report(options, finished_record(), exit_code, why);
   });
   QString message;

@@ -23,22 +23,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The hidden folders of this process. Never destroyed: another thread may need them while the program ends.
-struct HiddenFolders {
-  std::mutex mutex;
-  std::set<std::string> paths;
-};
-
-HiddenFolders& hidden_folders() {
-  static HiddenFolders* const folders = new HiddenFolders;
-  return *folders;
-}
-
 void remove_folder(const std::string& path) {
   // Whoever still writes into the folder may add a file between two looks; once the folder is gone nobody
   // can.
   std::error_code error;
   for (int attempt = 0; attempt < 100 && fs::exists(path, error); ++attempt) fs::remove_all(path, error);
+}
+
+/// The hidden folders of this process. Never destroyed: another thread may need them while the program ends.
+struct HiddenFolders {
+  std::mutex mutex;
+  std::set<std::string> paths;
+
+  /// With the mutex locked.
+  void remove_all() {
+    for (const std::string& path : paths) remove_folder(path);
+    paths.clear();
+  }
+};
+
+HiddenFolders& hidden_folders() {
+  static HiddenFolders* const folders = new HiddenFolders;
+  return *folders;
 }
 
 /// The file that a chain of links ends at, also when that does not exist yet.
@@ -118,8 +124,14 @@ void OutputSet::commit() {
 void OutputSet::discard_all() {
   HiddenFolders& folders = hidden_folders();
   const std::lock_guard<std::mutex> lock(folders.mutex);
-  for (const std::string& path : folders.paths) remove_folder(path);
-  folders.paths.clear();
+  folders.remove_all();
+}
+
+void OutputSet::discard_for_good() {
+  HiddenFolders& folders = hidden_folders();
+  // Never unlocked: the thread that was about to write must not make a folder between this and the end.
+  folders.mutex.lock();
+  folders.remove_all();
 }
 
 }  // namespace runner
