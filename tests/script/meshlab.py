@@ -48,11 +48,18 @@ def script_text(steps):
     return "\n".join(lines + ["</FilterScript>", ""])
 
 
+# Without -noreset the server starts anew when its only client has gone, and signals xvfb-run that it is ready again. If
+# that comes while xvfb-run removes its temporary folder after a program that failed, it takes the program's exit code for
+# rm's, ends with 5 instead, and leaves the server running.
+SERVER_ARGUMENTS = "-screen 0 1280x1024x24 -noreset"
+
+
 def run_in_display(command, folder, timeout=120):
     """Runs a program with a virtual display; returns its exit code and what it printed."""
     environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"}
-    process = subprocess.Popen(["xvfb-run", "-a", *command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, cwd=folder, env=environment, start_new_session=True)
+    process = subprocess.Popen(["xvfb-run", "-a", "-s", SERVER_ARGUMENTS, *command], stdin=subprocess.DEVNULL,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=folder, env=environment,
+                               start_new_session=True)
     try:
         console = process.communicate(timeout=timeout)[0]
     except subprocess.TimeoutExpired:
