@@ -30,12 +30,23 @@ as_root() {
   fi
 }
 
+# Shows on a terminal how far a build is: the step numbers that ninja prints, as [12/60].
+show_steps() {
+  local line
+  while IFS= read -r line; do
+    if [ -t 1 ] && [[ $line =~ ^\[[0-9]+/[0-9]+\] ]]; then
+      printf '\r   %s' "${BASH_REMATCH[0]}"
+    fi
+  done
+  [ ! -t 1 ] || printf '\r\033[K'
+}
+
 # Runs a step whose output only matters when it fails.
 # Usage: quietly LOG COMMAND...
 quietly() {
   local log=$1
   shift
-  "$@" >"$log" 2>&1 </dev/null || fail "$1 failed; the last lines of $log are:
+  "$@" 2>&1 </dev/null | tee "$log" | show_steps || fail "$1 failed; the last lines of $log are:
 $(tail -n 40 "$log")"
 }
 
