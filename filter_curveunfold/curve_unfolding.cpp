@@ -67,7 +67,8 @@ class Run {
   CurveUnfoldingResult finish(CompletionReport report, bool unfolded_layer);
 
  private:
-  std::vector<std::size_t> holes_in_conflict() const;
+  std::vector<std::pair<std::size_t, std::size_t>> conflicts() const;
+  std::vector<Corners> patches_but(std::size_t hole) const;
   void record(std::size_t hole);
 
   const TriangleMesh& mesh_;
@@ -100,8 +101,8 @@ void Run::fill_all(const Progress& progress) {
   for (std::size_t hole : todo_) record(hole);
 }
 
-// Holes whose patch meets the patch of a hole that comes before them.
-std::vector<std::size_t> Run::holes_in_conflict() const {
+// Pairs of holes, the earlier first, whose patches meet.
+std::vector<std::pair<std::size_t, std::size_t>> Run::conflicts() const {
   std::vector<Corners> triangles;
   std::vector<std::size_t> owner;
   for (std::size_t hole = 0; hole < filled_.size(); ++hole)
@@ -109,24 +110,40 @@ std::vector<std::size_t> Run::holes_in_conflict() const {
       triangles.push_back(corners(mesh_, filled_[hole].patch, t));
       owner.push_back(hole);
     }
-  std::vector<std::size_t> conflicts;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (const auto& [a, b] : improper_pairs(triangles))
-    if (owner[a] != owner[b]) conflicts.push_back(std::max(owner[a], owner[b]));
-  std::sort(conflicts.begin(), conflicts.end());
-  conflicts.erase(std::unique(conflicts.begin(), conflicts.end()), conflicts.end());
-  return conflicts;
+    if (owner[a] != owner[b]) pairs.push_back(std::minmax(owner[a], owner[b]));
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
-// Each patch is clean by itself; where two of them meet, the later one is tried again with the others as obstacles.
+std::vector<Corners> Run::patches_but(std::size_t hole) const {
+  std::vector<Corners> triangles;
+  for (std::size_t other = 0; other < filled_.size(); ++other)
+    if (other != hole)
+      for (const Triangle& t : filled_[other].patch.triangles) triangles.push_back(corners(mesh_, filled_[other].patch, t));
+  return triangles;
+}
+
+// Each patch is clean by itself; where two of them meet, the later one is tried again with the others as obstacles, and if
+// that is no help both as membranes, which bulge least. One of them is left open when they meet even then.
 void Run::separate(const Progress& progress) {
-  for (std::size_t hole : holes_in_conflict()) {
-    std::vector<Corners> obstacles;
-    for (std::size_t other = 0; other < filled_.size(); ++other)
-      if (other != hole)
-        for (const Triangle& t : filled_[other].patch.triangles)
-          obstacles.push_back(corners(mesh_, filled_[other].patch, t));
-    filled_[hole] = fill_hole(context_, loops_[hole], obstacles, progress);
-    record(hole);
+  CurveUnfoldingOptions soft = context_.options;
+  soft.energy = SurfaceEnergy::membrane;
+  const HoleFillerContext soft_context{mesh_, context_.topology, neighbourhood_, soft};
+  for (const auto& [first, second] : conflicts()) {
+    if (filled_[first].patch.empty() || filled_[second].patch.empty()) continue;
+    FilledHole kept = filled_[first];
+    filled_[second] = fill_hole(context_, loops_[second], patches_but(second), progress);
+    if (filled_[second].patch.empty()) {
+      filled_[first].patch = Patch();
+      filled_[first] = fill_hole(soft_context, loops_[first], patches_but(first), progress);
+      if (!filled_[first].patch.empty()) filled_[second] = fill_hole(soft_context, loops_[second], patches_but(second), progress);
+      if (filled_[second].patch.empty()) filled_[first] = std::move(kept);
+    }
+    record(first);
+    record(second);
   }
 }
 

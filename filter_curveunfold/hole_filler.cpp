@@ -2,6 +2,7 @@
 
 #include "common/core/error.h"
 #include "common/core/patch_relaxation.h"
+#include "common/core/patch_retriangulation.h"
 #include "common/core/patch_untangling.h"
 #include "common/core/rim.h"
 #include "common/core/triangle_intersection.h"
@@ -22,16 +23,36 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// A tangled patch is first relaxed, each time over one more ring and with enough sweeps for a few rings to settle on the
-// membrane; then vertices are moved one by one, as long as that helps. Patches with more tangled triangles are not worth it.
-constexpr int plain_relaxations = 2;
-constexpr int most_relaxations = 8;
+// What is done, one after the other, to a patch that is tangled somewhere: its triangles there replaced by others, over few
+// rings and then more; relaxed, with enough sweeps for a few rings to settle on the membrane; and at last vertices moved one
+// by one, as long as that helps.
+enum class Mending { retriangulate, relax, untangle };
+struct MendingStep {
+  Mending mending;
+  int rings;
+};
+constexpr std::array<MendingStep, 12> mending_steps = {{{Mending::retriangulate, 0},
+                                                        {Mending::retriangulate, 1},
+                                                        {Mending::relax, 1},
+                                                        {Mending::retriangulate, 1},
+                                                        {Mending::relax, 2},
+                                                        {Mending::retriangulate, 1},
+                                                        {Mending::retriangulate, 2},
+                                                        {Mending::retriangulate, 3},
+                                                        {Mending::untangle, 0},
+                                                        {Mending::untangle, 0},
+                                                        {Mending::untangle, 1},
+                                                        {Mending::retriangulate, 2}}};
 constexpr int relaxation_sweeps = 10;
 constexpr int untangling_rounds = 3;
-// The bounds are per patch, but for the last one, which is for all tries with one flat triangulation together.
-constexpr std::size_t most_to_relax = 300;
+// Patches with more tangled triangles are not worth it. The bounds are per patch, but for the last one, which is for all
+// tries with one flat triangulation together.
+constexpr std::size_t most_to_mend = 300;
 constexpr std::size_t most_to_untangle = 60;
-constexpr int most_untanglings = 10;
+constexpr int most_untanglings = 3;
+
+// With more tangled triangles than this another energy or resolution is no help: only another triangulation may be.
+constexpr std::size_t most_to_try_again = 1000;
 
 // A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape.
 constexpr std::size_t most_triangles_to_refine = 5000;
@@ -58,17 +79,17 @@ std::vector<SurfaceEnergy> energies(SurfaceEnergy asked) {
   return {asked};
 }
 
-// What is asked for; the other energies; more resolution; and all of them again with another unfolding. A pinched rim is opened
-// behind the surface first, where it shows least.
+// What is asked for; the other energies; more resolution; and then other unfoldings. A pinched rim is opened behind the
+// surface first, where it shows least.
 std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   std::vector<Try> list;
   const std::vector<double> heights = pinched ? std::vector<double>{0.2, -0.2, 0.07, -0.07} : std::vector<double>{0.0};
   for (Way way : {Way::asked, Way::descended, Way::stretched}) {
     if (way == Way::descended && options.unfolding.method != UnfoldMethod::automatic) continue;
-    for (double height : heights)
-      for (double resolution : {1.0, 1.25, 2.0})
-        for (SurfaceEnergy energy : energies(options.energy))
-          list.push_back({way, energy, resolution, height});
+    for (double height : heights) {
+      for (SurfaceEnergy energy : energies(options.energy)) list.push_back({way, energy, 1.0, height});
+      if (way == Way::asked && height == heights.front()) list.push_back({way, options.energy, 2.0, height});
+    }
   }
   return list;
 }
@@ -112,6 +133,7 @@ class HoleFiller {
  private:
   bool unfold_rim(const Try& plan);
   std::string attempt(const Try& plan);
+  bool mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step);
   std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
   Patch as_patch(const PatchMesh& embedded) const;
   std::string route(const Try& plan, int count) const;
@@ -126,8 +148,9 @@ class HoleFiller {
   Unfolding unfolding_;
   std::optional<std::pair<Way, double>> unfolded_;  // way and flap height: what `result_.flat` belongs to
   FilledHole result_;
-  bool relaxed_ = false;
+  bool mended_ = false;
   int untanglings_ = 0;
+  bool hopeless_ = false;  // with the flat triangulation at hand
   std::size_t triangles_ = 0;  // of the last embedded patch
 };
 
@@ -137,6 +160,7 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   if (unfolded_ == wanted) return !result_.flat.empty();
   unfolded_ = wanted;
   untanglings_ = 0;
+  hopeless_ = false;
   result_.flat.clear();
   opened_ = open_pinches(rim_, plan.flap_height);
   UnfoldOptions options = context_.options.unfolding;
@@ -203,39 +227,48 @@ std::string HoleFiller::attempt(const Try& plan) {
   options.weights = context_.options.weights;
   options.edge_length = context_.options.edge_length;
   options.resolution = plan.resolution;
+  mended_ = false;
   PatchMesh embedded = embed(opened_.rim, result_.flat, options, progress_);
   result_.times.embedding += seconds_since(start);
   triangles_ = embedded.triangle_count();
-  std::string first_defect;
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  int stalled = 0;
-  for (int relaxations = 0;; ++relaxations) {
-    std::string defect;
-    Patch patch = as_patch(embedded);
-    std::vector<Index> tangled = tangled_triangles(patch, defect);
-    if (defect.empty()) {
-      result_.patch = std::move(patch);
-      relaxed_ = relaxations > 0;
-      return {};
+  std::string defect;
+  Patch patch = as_patch(embedded);
+  std::vector<Index> tangled = tangled_triangles(patch, defect);
+  const std::string first_defect = defect;
+  for (std::size_t before = tangled.size() + 1; !defect.empty() && tangled.size() < before;) {
+    before = tangled.size();
+    for (const MendingStep& step : mending_steps) {
+      // The flaps follow the embedded triangles; they stay as they are, and what meets them moves.
+      tangled.erase(std::lower_bound(tangled.begin(), tangled.end(), embedded.triangle_count()), tangled.end());
+      if (defect.empty() || tangled.empty() || tangled.size() > most_to_mend) break;
+      start = Clock::now();
+      const bool changed = mend(embedded, tangled, step);
+      result_.times.embedding += seconds_since(start);
+      if (!changed) continue;
+      mended_ = true;
+      patch = as_patch(embedded);
+      tangled = tangled_triangles(patch, defect);
     }
-    if (first_defect.empty()) first_defect = defect;
-    // The flaps follow the embedded triangles; they stay as they are, and what meets them moves.
-    tangled.erase(std::lower_bound(tangled.begin(), tangled.end(), embedded.triangle_count()), tangled.end());
-    const bool plain = relaxations < plain_relaxations;
-    if (tangled.empty() || tangled.size() > (plain ? most_to_relax : most_to_untangle)) return first_defect;
-    // An untangling that brings nothing once may still open the way for the next one, but not twice.
-    stalled = relaxations > plain_relaxations && tangled.size() >= fewest ? stalled + 1 : 0;
-    fewest = std::min(fewest, tangled.size());
-    if (stalled == 2 || relaxations == most_relaxations || (!plain && ++untanglings_ > most_untanglings))
-      return first_defect;
-    start = Clock::now();
-    if (plain)
-      relax_around(embedded, tangled, relaxations + 1, relaxation_sweeps);
-    else
-      untangle(embedded, tangled, context_.neighbourhood, obstacles_, opened_.rim.forbidden, stalled, untangling_rounds,
-               progress_);
-    result_.times.embedding += seconds_since(start);
+    hopeless_ = tangled.size() > most_to_try_again;
   }
+  if (!defect.empty()) return first_defect;
+  result_.patch = std::move(patch);
+  return {};
+}
+
+bool HoleFiller::mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step) {
+  switch (step.mending) {
+    case Mending::retriangulate:
+      return retriangulate(embedded, tangled, opened_.rim, context_.neighbourhood, obstacles_, step.rings, progress_) > 0;
+    case Mending::relax:
+      relax_around(embedded, tangled, step.rings, relaxation_sweeps);
+      return true;
+    case Mending::untangle:
+      if (tangled.size() > most_to_untangle || ++untanglings_ > most_untanglings) return false;
+      return untangle(embedded, tangled, context_.neighbourhood, obstacles_, opened_.rim.forbidden, step.rings,
+                      untangling_rounds, progress_) > 0;
+  }
+  return false;
 }
 
 std::string HoleFiller::route(const Try& plan, int count) const {
@@ -244,7 +277,7 @@ std::string HoleFiller::route(const Try& plan, int count) const {
   if (plan.way == Way::stretched) route += " and stretched";
   route += std::string(", ") + name(plan.energy);
   if (plan.resolution > 1) route += ", finer";
-  if (relaxed_) route += ", relaxed locally";
+  if (mended_) route += ", mended locally";
   if (count > 1) route += ", try " + std::to_string(count);
   return route;
 }
@@ -264,7 +297,7 @@ FilledHole HoleFiller::fill() {
     if (plan.resolution > 1.5 && triangles_ > most_triangles_to_refine) continue;
     std::string defect;
     try {
-      if (!unfold_rim(plan)) continue;
+      if (!unfold_rim(plan) || hopeless_) continue;
       ++count;
       defect = attempt(plan);
     } catch (const Cancelled&) {

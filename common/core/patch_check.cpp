@@ -75,7 +75,9 @@ class Checker {
                   InputContacts& found) const;
   bool holds_position_wanted(const Triangle& input_triangle, Index patch_triangle) const;
 
-  void report(PatchDefect defect) { result_.defect = defect; }
+  void report(PatchDefect defect) {
+    if (result_.passed()) result_.defect = defect;
+  }
 
   const TriangleBlocks& blocks_;
   const TriangleMesh& mesh_;
@@ -102,7 +104,8 @@ PatchCheck Checker::run(const Progress& progress) {
                                                           {&Checker::find_input_contacts, 1}}};
   for (const auto& [step, done] : steps) {
     (this->*step)();
-    if (!result_.passed()) break;
+    // A patch that meets itself is searched for contacts with the input too, so that a caller can mend both.
+    if (!result_.passed() && result_.defect != PatchDefect::meets_itself) break;
     progress.update(done);
   }
   sort_unique(result_.patch_triangles);
@@ -320,15 +323,15 @@ void Checker::find_input_contacts() {
                       });
     for (const InputContacts& part : found) contacts.append(part);
   }
-  if (!contacts.patch_coincident.empty()) {
-    report(PatchDefect::coincident_vertices);
-    result_.patch_triangles = std::move(contacts.patch_coincident);
-    result_.input_triangles = std::move(contacts.input_coincident);
-  } else if (!contacts.patch_meeting.empty()) {
-    report(PatchDefect::meets_input);
-    result_.patch_triangles = std::move(contacts.patch_meeting);
-    result_.input_triangles = std::move(contacts.input_met);
-  }
+  const auto add = [&](PatchDefect defect, const std::vector<Index>& patch, const std::vector<Index>& input) {
+    report(defect);
+    result_.patch_triangles.insert(result_.patch_triangles.end(), patch.begin(), patch.end());
+    result_.input_triangles.insert(result_.input_triangles.end(), input.begin(), input.end());
+  };
+  if (!contacts.patch_coincident.empty())
+    add(PatchDefect::coincident_vertices, contacts.patch_coincident, contacts.input_coincident);
+  else if (!contacts.patch_meeting.empty())
+    add(PatchDefect::meets_input, contacts.patch_meeting, contacts.input_met);
 }
 
 }  // namespace

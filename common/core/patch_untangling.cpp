@@ -1,6 +1,7 @@
 #include "common/core/patch_untangling.h"
 
 #include "common/core/patch.h"
+#include "common/core/patch_surroundings.h"
 #include "common/core/triangle_intersection.h"
 
 #include <algorithm>
@@ -17,9 +18,6 @@ constexpr std::array<double, 7> distances = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0
 // Places on the way from the middle of a side of the star to the vertex.
 constexpr std::array<double, 3> shares_of_the_way = {0.5, 0.25, 0.1};
 
-// What a degenerate triangle counts: more than any likely number of meetings.
-constexpr std::size_t degenerate_cost = 1000;
-
 // The 26 directions from the centre of a cube to its faces, edges and corners.
 std::vector<Vector3> directions() {
   std::vector<Vector3> list;
@@ -30,33 +28,11 @@ std::vector<Vector3> directions() {
   return list;
 }
 
-struct Box {
-  Vector3 low, high;
-  explicit Box(const Corners& c) : low(c[0].cwiseMin(c[1]).cwiseMin(c[2])), high(c[0].cwiseMax(c[1]).cwiseMax(c[2])) {}
-  void extend(const Box& other) {
-    low = low.cwiseMin(other.low);
-    high = high.cwiseMax(other.high);
-  }
-  void widen(double margin) {
-    low -= Vector3::Constant(margin);
-    high += Vector3::Constant(margin);
-  }
-  bool meets(const Box& other) const {
-    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
-  }
-};
-
 class Untangler {
  public:
   Untangler(PatchMesh& patch, const InputNeighbourhood& input, const std::vector<Corners>& obstacles,
             const ForbiddenEdges& forbidden)
-      : patch_(patch), input_(input), forbidden_(forbidden), directions_(directions()) {
-    Box all({patch.position(0), patch.position(0), patch.position(0)});
-    for (Index t = 0; t < patch.triangle_count(); ++t)
-      if (patch.alive(t)) all.extend(Box(corners(t)));
-    all.widen((all.high - all.low).maxCoeff());
-    for (const Corners& c : obstacles)
-      if (all.meets(Box(c))) obstacles_.push_back(c);
+      : patch_(patch), forbidden_(forbidden), surroundings_(patch, input, obstacles), directions_(directions()) {
     for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
       patch.move(v, as_stored(patch.position(v)));
   }
@@ -66,23 +42,15 @@ class Untangler {
   bool improve_by_flips(Index triangle);
 
  private:
-  Corners corners(Index triangle) const {
-    const Triangle& t = patch_.triangles()[triangle];
-    return {patch_.position(t[0]), patch_.position(t[1]), patch_.position(t[2])};
-  }
   double mean_edge(Index vertex) const;
-  void collect_nearby(double reach);
   std::vector<Vector3> places(Index vertex, double edge) const;
   bool can_flip(Index half_edge) const;
-  std::size_t cost(std::size_t give_up_at) const;
 
   PatchMesh& patch_;
-  const InputNeighbourhood& input_;
   const ForbiddenEdges& forbidden_;
-  std::vector<Corners> obstacles_;  // those that the patch could reach
+  PatchSurroundings surroundings_;
   const std::vector<Vector3> directions_;
-  std::vector<Index> star_;       // the triangles at hand: round a vertex, or at the two sides of an edge
-  std::vector<Corners> nearby_;   // other triangles of the patch, and obstacles, that the star can reach
+  std::vector<Index> star_;  // the triangles at hand: round a vertex, or at the two sides of an edge
 };
 
 // The inner vertices of the tangled triangles; a triangle of rim vertices only gets one.
@@ -103,7 +71,7 @@ std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled
     }
     // A vertex of its own lets a triangle bulge round what it meets: the last resort, when moving its corners was no help.
     if (!any || rings > 0) {
-      const Corners c = corners(t);
+      const Corners c = surroundings_.corners(t);
       vertices.push_back(patch_.insert(t, as_stored((c[0] + c[1] + c[2]) / 3.0)));
     }
   }
@@ -129,42 +97,6 @@ double Untangler::mean_edge(Index vertex) const {
   return sum / count;
 }
 
-void Untangler::collect_nearby(double reach) {
-  nearby_.clear();
-  Box box(corners(star_.front()));
-  for (Index t : star_) box.extend(Box(corners(t)));
-  box.widen(reach);
-  for (Index t = 0; t < patch_.triangle_count(); ++t) {
-    if (!patch_.alive(t) || std::find(star_.begin(), star_.end(), t) != star_.end()) continue;
-    const Corners c = corners(t);
-    if (box.meets(Box(c)) && !collinear(c[0], c[1], c[2])) nearby_.push_back(c);
-  }
-  for (const Corners& c : obstacles_)
-    if (box.meets(Box(c))) nearby_.push_back(c);
-}
-
-// How many triangles the star meets, its vertex being where it is now; `give_up_at` when at least that many.
-std::size_t Untangler::cost(std::size_t give_up_at) const {
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < star_.size(); ++i) {
-    const Corners c = corners(star_[i]);
-    if (collinear(c[0], c[1], c[2])) {
-      sum += degenerate_cost;
-    } else {
-      const Box box(c);
-      for (const Corners& other : nearby_)
-        if (box.meets(Box(other)) && meet_improperly(c, other)) ++sum;
-      for (std::size_t j = 0; j < i; ++j) {
-        const Corners other = corners(star_[j]);
-        if (!collinear(other[0], other[1], other[2]) && meet_improperly(c, other)) ++sum;
-      }
-      sum += input_triangles_met(input_, c).size();
-    }
-    if (sum >= give_up_at) return give_up_at;
-  }
-  return sum;
-}
-
 // Where a vertex may go: all round it, and close to the sides of its star, for stars that wrap a curl of the rim.
 std::vector<Vector3> Untangler::places(Index vertex, double edge) const {
   std::vector<Vector3> list;
@@ -173,7 +105,7 @@ std::vector<Vector3> Untangler::places(Index vertex, double edge) const {
     for (const Vector3& direction : directions_) list.push_back(as_stored(here + distance * edge * direction));
   for (double share : shares_of_the_way)
     for (Index t : star_) {
-      const Corners c = corners(t);
+      const Corners c = surroundings_.corners(t);
       const Vector3 side = 0.5 * (c[0] + c[1] + c[2] - here);
       list.push_back(as_stored(side + share * (here - side)));
     }
@@ -186,14 +118,14 @@ bool Untangler::improve(Index vertex) {
   if (!(edge > 0)) return false;
   star_.clear();
   patch_.for_outgoing(vertex, [&](Index h) { star_.push_back(h / 3); });
-  collect_nearby(edge * distances.back());
+  surroundings_.collect_round(star_, edge * distances.back());
   const Vector3 start = patch_.position(vertex);
   Vector3 best = start;
-  std::size_t least = cost(10 * degenerate_cost);
+  std::size_t least = surroundings_.met_by_star(star_);
   for (const Vector3& place : places(vertex, edge)) {
     if (least == 0) break;
     patch_.move(vertex, place);
-    const std::size_t now = cost(least);
+    const std::size_t now = surroundings_.met_by_star(star_, least);
     if (now < least) {
       least = now;
       best = place;
@@ -215,11 +147,11 @@ bool Untangler::improve_by_flips(Index triangle) {
   for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
     if (!can_flip(h)) continue;
     star_ = {triangle, patch_.opposite(h) / 3};
-    collect_nearby(0.0);
-    const std::size_t before = cost(10 * degenerate_cost);
+    surroundings_.collect_round(star_, 0.0);
+    const std::size_t before = surroundings_.met_by_star(star_);
     if (before == 0) continue;
     patch_.flip(h);
-    if (cost(before) < before) return true;
+    if (surroundings_.met_by_star(star_, before) < before) return true;
     // The new diagonal is the first half-edge of both triangles; flipping it brings the old one back.
     patch_.flip(3 * triangle);
   }

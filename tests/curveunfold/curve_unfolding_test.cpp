@@ -379,6 +379,19 @@ TEST(CurveUnfolding, PatchesThatWouldMeetAreSeparated) {
   EXPECT_NE(holes(result)[1].route, holes(result)[0].route);
 }
 
+// A slab cut out of a ball: two rims so close to each other that only flat caps fit between them.
+TEST(CurveUnfolding, BothPatchesYieldWhereOneIsNotEnough) {
+  const TriangleMesh lower = test::sphere_with_hole(3, 0.6);
+  TriangleMesh upper = lower;
+  for (Vector3& p : upper.vertices) p = as_stored(Vector3(p.x(), -p.y(), 1.66 - p.z()));
+  const TriangleMesh mesh = test::join(lower, upper);
+  const CurveUnfoldingResult result = fill(mesh);
+  expect_adds_up(mesh, result);
+  EXPECT_EQ(result.completion.report.count(HoleOutcome::closed), 2u);
+  for (const HoleReport& hole : holes(result))
+    EXPECT_NE(hole.route.find("membrane"), std::string::npos) << hole.route << hole.reason;
+}
+
 TEST(CurveUnfolding, StagesAreTimed) {
   const CurveUnfoldingResult result = fill(test::sphere_with_holes(2));
   const auto& stages = result.completion.report.stage_seconds;

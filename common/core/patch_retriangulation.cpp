@@ -1,0 +1,449 @@
+#include "common/core/patch_retriangulation.h"
+
+#include "common/core/patch_surroundings.h"
+#include "common/core/triangle_intersection.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace meshcomplete {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+constexpr Index none = PatchMesh::none;
+
+// Gaps with more corners take too long.
+constexpr std::size_t most_corners = 60;
+
+// Among triangulations creased less than this the one with the shortest edges is best: cosine of 60 degrees.
+constexpr double slight_crease = 0.5;
+
+// How often triangles of one triangulation that meet each other are forbidden, one of each pair, before giving up.
+constexpr int most_forbiddings = 12;
+
+// Of a triangulation of part of the gap: its worst crease, as one minus the cosine of the angle between normals, and the sum
+// of its triangles' squared sides.
+struct Cost {
+  double crease = 0;
+  double squares = 0;
+  bool operator<(const Cost& other) const {
+    return crease != other.crease ? crease < other.crease : squares < other.squares;
+  }
+};
+
+struct Gap {
+  std::vector<Index> triangles;  // that are taken out
+  std::vector<Index> corners;    // vertices of the patch, in the sense of the triangles
+  std::vector<Vector3> normals;  // unit, beyond the side from each corner to the next; zero where there is nothing
+};
+
+class GapFinder {
+ public:
+  GapFinder(const PatchMesh& patch, const Rim& rim) : patch_(patch) {
+    const Index n = static_cast<Index>(rim.positions.size());
+    for (const Triangle& t : rim.ring.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+        if (a >= n || b >= n || a != (b + 1) % n) continue;
+        const auto& p = rim.ring.vertices;
+        rim_normals_[b] = (p[b] - p[a]).cross(p[c] - p[a]).stableNormalized();
+      }
+  }
+
+  std::vector<Gap> gaps(const std::vector<Index>& tangled, int rings) const;
+
+ private:
+  std::optional<Gap> gap(const std::vector<Index>& triangles, const std::vector<char>& inside) const;
+
+  const PatchMesh& patch_;
+  std::map<Index, Vector3> rim_normals_;  // of the input's triangles at the rim edges, by the edge's first vertex
+};
+
+std::vector<Gap> GapFinder::gaps(const std::vector<Index>& tangled, int rings) const {
+  std::vector<char> inside(patch_.triangle_count(), 0);
+  std::vector<Index> triangles;
+  const auto take = [&](Index t) {
+    if (inside[t]) return;
+    inside[t] = 1;
+    triangles.push_back(t);
+  };
+  for (Index t : tangled) take(t);
+  std::size_t first = 0;
+  for (int ring = 0; ring < rings; ++ring) {
+    const std::size_t last = triangles.size();
+    for (; first < last; ++first)
+      for (Index v : Triangle(patch_.triangles()[triangles[first]])) patch_.for_outgoing(v, [&](Index h) { take(h / 3); });
+  }
+  // Parts that hang together by edges.
+  std::vector<Gap> found;
+  std::vector<char> seen(patch_.triangle_count(), 0);
+  for (Index start : triangles) {
+    if (seen[start]) continue;
+    std::vector<Index> part = {start};
+    seen[start] = 1;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (Index h = 3 * part[i]; h < 3 * part[i] + 3; ++h) {
+        const Index other = patch_.opposite(h);
+        if (other == none || !inside[other / 3] || seen[other / 3]) continue;
+        seen[other / 3] = 1;
+        part.push_back(other / 3);
+      }
+    if (std::optional<Gap> one = gap(part, inside)) found.push_back(std::move(*one));
+  }
+  return found;
+}
+
+std::optional<Gap> GapFinder::gap(const std::vector<Index>& triangles, const std::vector<char>& inside) const {
+  std::map<Index, Index> side_from;  // half-edges round the part
+  for (Index t : triangles)
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+      const Index other = patch_.opposite(h);
+      if (other != none && inside[other / 3]) continue;
+      if (!side_from.emplace(patch_.origin(h), h).second) return std::nullopt;
+    }
+  if (side_from.size() > most_corners) return std::nullopt;
+  Gap gap;
+  gap.triangles = triangles;
+  Index corner = side_from.begin()->first;
+  do {
+    const Index h = side_from.at(corner), other = patch_.opposite(h);
+    gap.corners.push_back(corner);
+    if (other != none) {
+      gap.normals.push_back(patch_.area_normal(other / 3).stableNormalized());
+    } else {
+      const auto at = rim_normals_.find(corner);
+      gap.normals.push_back(at == rim_normals_.end() ? Vector3(Vector3::Zero()) : at->second);
+    }
+    corner = patch_.target(h);
+  } while (corner != gap.corners.front());
+  if (gap.corners.size() != side_from.size()) return std::nullopt;
+  return gap;
+}
+
+// All triangulations of a gap, by dynamic programming over its corners i < j < k.
+class GapFiller {
+ public:
+  GapFiller(const PatchMesh& patch, const Gap& gap, const ForbiddenEdges& forbidden, PatchSurroundings& surroundings)
+      : patch_(patch), gap_(gap), surroundings_(surroundings), n_(gap.corners.size()), allowed_(n_ * n_, 1),
+        state_(n_ * n_ * n_, unknown) {
+    std::vector<char> inside(patch.triangle_count(), 0);
+    for (Index t : gap.triangles) inside[t] = 1;
+    TriangleBox box(surroundings.corners(gap.triangles.front()));
+    for (Index t : gap.triangles) box.extend(TriangleBox(surroundings.corners(t)));
+    surroundings.collect(box, [&](Index t) { return inside[t] != 0; });
+    find_allowed_edges(inside, forbidden);
+  }
+
+  /// The triangles, corners being vertices of the patch; empty when there are none.
+  std::vector<Triangle> fill(const Progress& progress);
+
+ private:
+  enum State : char { unknown, free, taken };
+  struct Part {
+    Cost cost;
+    std::size_t apex = 0;
+    bool possible = false;
+    Vector3 normal = Vector3::Zero();
+  };
+
+  const Vector3& corner(std::size_t i) const { return patch_.position(gap_.corners[i]); }
+  Part& part(std::size_t i, std::size_t k) { return parts_[i * n_ + k]; }
+  char& state(std::size_t i, std::size_t j, std::size_t k) { return state_[(i * n_ + j) * n_ + k]; }
+  void find_allowed_edges(const std::vector<char>& inside, const ForbiddenEdges& forbidden);
+  bool is_free(std::size_t i, std::size_t j, std::size_t k);
+  bool optimise(const Progress& progress);
+  std::vector<std::array<std::size_t, 3>> chosen();
+  static double crease(const Vector3& a, const Vector3& b) {
+    const double angle = 1 - a.dot(b);  // a normal of zero gives a right angle; sides without a neighbour have none
+    return angle < slight_crease ? 0.0 : angle;
+  }
+
+  const PatchMesh& patch_;
+  const Gap& gap_;
+  PatchSurroundings& surroundings_;
+  const std::size_t n_;
+  std::vector<char> allowed_;  // per pair of corners: whether an edge may join them
+  std::vector<char> state_;    // per triangle
+  std::vector<Part> parts_;
+};
+
+void GapFiller::find_allowed_edges(const std::vector<char>& inside, const ForbiddenEdges& forbidden) {
+  std::map<Index, std::size_t> place;
+  for (std::size_t i = 0; i < n_; ++i) place[gap_.corners[i]] = i;
+  const auto forbid = [&](std::size_t i, std::size_t k) { allowed_[i * n_ + k] = allowed_[k * n_ + i] = 0; };
+  // Edges of triangles that stay, apart from the sides of the gap.
+  for (std::size_t i = 0; i < n_; ++i)
+    patch_.for_outgoing(gap_.corners[i], [&](Index h) {
+      if (inside[h / 3]) return;
+      for (Index v : {patch_.target(h), patch_.apex(h)}) {
+        const auto at = place.find(v);
+        if (at != place.end()) forbid(i, at->second);
+      }
+    });
+  for (const auto& [a, b] : forbidden) {
+    const auto at_a = place.find(a), at_b = place.find(b);
+    if (at_a != place.end() && at_b != place.end()) forbid(at_a->second, at_b->second);
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    const std::size_t k = (i + 1) % n_;
+    allowed_[i * n_ + k] = allowed_[k * n_ + i] = 1;
+  }
+}
+
+bool GapFiller::is_free(std::size_t i, std::size_t j, std::size_t k) {
+  char& known = state(i, j, k);
+  if (known == unknown) {
+    const Corners c = {corner(i), corner(j), corner(k)};
+    known = !collinear(c[0], c[1], c[2]) && surroundings_.met_by(c, 1) == 0 ? free : taken;
+  }
+  return known == free;
+}
+
+bool GapFiller::optimise(const Progress& progress) {
+  parts_.assign(n_ * n_, Part());
+  for (std::size_t i = 0; i < n_; ++i) {
+    Part& side = part(i, (i + 1) % n_);
+    side.possible = true;
+    side.normal = gap_.normals[i];
+  }
+  for (std::size_t span = 2; span < n_; ++span) {
+    progress.check();
+    for (std::size_t i = 0; i + span < n_; ++i) {
+      const std::size_t k = i + span;
+      const bool whole = i == 0 && k == n_ - 1;
+      if (!allowed_[i * n_ + k]) continue;
+      Part best;
+      for (std::size_t j = i + 1; j < k; ++j) {
+        const Part &left = part(i, j), &right = part(j, k);
+        if (!left.possible || !right.possible || !allowed_[i * n_ + j] || !allowed_[j * n_ + k]) continue;
+        const Vector3 normal = (corner(j) - corner(i)).cross(corner(k) - corner(i)).stableNormalized();
+        Cost cost;
+        cost.crease = std::max({left.cost.crease, right.cost.crease, crease(left.normal, normal), crease(right.normal, normal)});
+        if (whole) cost.crease = std::max(cost.crease, crease(gap_.normals[k], normal));
+        cost.squares = left.cost.squares + right.cost.squares + (corner(j) - corner(i)).squaredNorm() +
+                       (corner(k) - corner(j)).squaredNorm() + (corner(i) - corner(k)).squaredNorm();
+        if ((best.possible && !(cost < best.cost)) || !is_free(i, j, k)) continue;
+        best = {cost, j, true, normal};
+      }
+      // The last part is the whole; its side was possible already.
+      if (best.possible || whole) part(i, k) = best;
+    }
+  }
+  return part(0, n_ - 1).possible;
+}
+
+std::vector<std::array<std::size_t, 3>> GapFiller::chosen() {
+  std::vector<std::array<std::size_t, 3>> triangles;
+  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, n_ - 1}};
+  while (!open.empty()) {
+    const auto [i, k] = open.back();
+    open.pop_back();
+    if (k == i + 1) continue;
+    const std::size_t j = part(i, k).apex;
+    triangles.push_back({i, j, k});
+    open.emplace_back(i, j);
+    open.emplace_back(j, k);
+  }
+  return triangles;
+}
+
+std::vector<Triangle> GapFiller::fill(const Progress& progress) {
+  if (n_ < 3) return {};
+  for (int round = 0; round < most_forbiddings; ++round) {
+    if (!optimise(progress)) return {};
+    const auto triangles = chosen();
+    std::vector<Corners> soup;
+    for (const auto& t : triangles) soup.push_back({corner(t[0]), corner(t[1]), corner(t[2])});
+    const auto size = [&](Index t) {
+      return (soup[t][0] - soup[t][1]).squaredNorm() + (soup[t][1] - soup[t][2]).squaredNorm() +
+             (soup[t][2] - soup[t][0]).squaredNorm();
+    };
+    const auto pairs = improper_pairs(soup);
+    if (pairs.empty()) {
+      std::vector<Triangle> result;
+      for (const auto& t : triangles) result.push_back({gap_.corners[t[0]], gap_.corners[t[1]], gap_.corners[t[2]]});
+      return result;
+    }
+    for (const auto& [a, b] : pairs) {
+      const auto& t = triangles[size(a) > size(b) ? a : b];
+      state(t[0], t[1], t[2]) = taken;
+    }
+  }
+  return {};
+}
+
+// Gives closed gaps the resolution of what is round them, by steps that meet nothing.
+class GapRefiner {
+ public:
+  /// The first `new_triangles` of the patch are those in gaps.
+  GapRefiner(PatchMesh& patch, std::size_t new_triangles, const ForbiddenEdges& forbidden, PatchSurroundings& surroundings)
+      : patch_(patch), forbidden_(forbidden), surroundings_(surroundings) {
+    for (Index t = 0; t < new_triangles; ++t) triangles_.push_back(t);
+  }
+
+  void refine(const Progress& progress) {
+    for (int pass = 0; pass < most_passes; ++pass) {
+      if (!split_long_edges()) break;
+      flip_edges();
+      progress.check();
+    }
+    for (int sweep = 0; sweep < smoothing_sweeps; ++sweep) {
+      for (Index v : vertices_) smooth(v);
+      flip_edges();
+      progress.check();
+    }
+  }
+
+ private:
+  static constexpr int most_passes = 6;
+  static constexpr int smoothing_sweeps = 4;
+
+  bool inside(Index triangle) const {
+    return std::binary_search(triangles_.begin(), triangles_.end(), triangle);
+  }
+  bool split_long_edges();
+  void flip_edges();
+  bool flip(Index half_edge);
+  void smooth(Index vertex);
+  double target(Index vertex);
+
+  PatchMesh& patch_;
+  const ForbiddenEdges& forbidden_;
+  PatchSurroundings& surroundings_;
+  std::vector<Index> triangles_;  // in gaps, ascending: new ones have the highest numbers
+  std::vector<Index> vertices_;   // new ones
+  std::map<Index, double> target_;
+};
+
+// Of a corner of the gap: the mean length of the edges outside.
+double GapRefiner::target(Index vertex) {
+  const auto known = target_.find(vertex);
+  if (known != target_.end()) return known->second;
+  double outside = 0, all = 0;
+  int count_outside = 0, count = 0;
+  patch_.for_outgoing(vertex, [&](Index h) {
+    for (Index side : {h, PatchMesh::previous(h)}) {
+      const double length = patch_.length(side);
+      all += length;
+      ++count;
+      if (inside(h / 3) && !patch_.is_boundary(side)) continue;
+      outside += length;
+      ++count_outside;
+    }
+  });
+  return target_[vertex] = count_outside > 0 ? outside / count_outside : all / count;
+}
+
+bool GapRefiner::split_long_edges() {
+  constexpr double longest = 4.0 / 3.0;
+  std::vector<std::pair<double, Index>> edges;
+  for (Index t : triangles_)
+    for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+      if (patch_.is_boundary(h) || patch_.opposite(h) < h || !inside(patch_.opposite(h) / 3)) continue;
+      const double wanted = 0.5 * (target(patch_.origin(h)) + target(patch_.target(h)));
+      if (patch_.length(h) > longest * wanted) edges.emplace_back(-patch_.length(h), h);
+    }
+  std::sort(edges.begin(), edges.end());
+  for (const auto& [length, h] : edges) {
+    const Index a = patch_.origin(h), b = patch_.target(h);
+    // Shortened by a split before.
+    if (patch_.length(h) < -length) continue;
+    const Index m = patch_.split(h, as_stored(0.5 * (patch_.position(a) + patch_.position(b))));
+    target_[m] = 0.5 * (target(a) + target(b));
+    vertices_.push_back(m);
+    const Index count = static_cast<Index>(patch_.triangle_count());
+    triangles_.push_back(count - 2);
+    triangles_.push_back(count - 1);
+  }
+  return !edges.empty();
+}
+
+double roundness(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const double squares = (a - b).squaredNorm() + (b - c).squaredNorm() + (c - a).squaredNorm();
+  return squares > 0 ? (b - a).cross(c - a).norm() / squares : 0.0;
+}
+
+// Flips when the less round triangle becomes rounder and the surface is not creased for it.
+bool GapRefiner::flip(Index h) {
+  if (patch_.is_boundary(h) || !inside(patch_.opposite(h) / 3)) return false;
+  const Index a = patch_.origin(h), b = patch_.target(h), c = patch_.apex(h), d = patch_.apex(patch_.opposite(h));
+  const Vector3 &pa = patch_.position(a), &pb = patch_.position(b), &pc = patch_.position(c), &pd = patch_.position(d);
+  const double before = std::min(roundness(pa, pb, pc), roundness(pb, pa, pd));
+  const double after = std::min(roundness(pc, pd, pb), roundness(pd, pc, pa));
+  if (!(after > 1.01 * before)) return false;
+  const Vector3 n1 = (pd - pc).cross(pb - pc), n2 = (pc - pd).cross(pa - pd);
+  if (n1.dot(n2) < (1 - slight_crease) * n1.norm() * n2.norm()) return false;
+  const std::pair<Index, Index> pair(std::min(c, d), std::max(c, d));
+  if (c == d || patch_.joined(c, d) || std::binary_search(forbidden_.begin(), forbidden_.end(), pair)) return false;
+  const std::vector<Index> star = {h / 3, patch_.opposite(h) / 3};
+  surroundings_.collect_round(star, 0.0);
+  patch_.flip(h);
+  if (surroundings_.met_by_star(star, 1) == 0) return true;
+  patch_.flip(3 * (h / 3));  // the diagonal is the first half-edge of both triangles now
+  return false;
+}
+
+void GapRefiner::flip_edges() {
+  constexpr int most_rounds = 5;
+  for (int round = 0; round < most_rounds; ++round) {
+    bool any = false;
+    for (Index t : triangles_)
+      for (Index h = 3 * t; h < 3 * t + 3; ++h) any |= flip(h);
+    if (!any) break;
+  }
+}
+
+// Towards the mean of its neighbours, as far as the star stays clean.
+void GapRefiner::smooth(Index vertex) {
+  Vector3 sum = Vector3::Zero();
+  double count = 0;
+  patch_.for_neighbours(vertex, [&](Index v) {
+    sum += patch_.position(v);
+    ++count;
+  });
+  const Vector3 start = patch_.position(vertex), goal = sum / count;
+  std::vector<Index> star;
+  patch_.for_outgoing(vertex, [&](Index h) { star.push_back(h / 3); });
+  surroundings_.collect_round(star, (goal - start).norm());
+  for (double step : {1.0, 0.5, 0.25}) {
+    patch_.move(vertex, as_stored(start + step * (goal - start)));
+    if (surroundings_.met_by_star(star, 1) == 0) return;
+  }
+  patch_.move(vertex, start);
+}
+
+}  // namespace
+
+std::size_t retriangulate(PatchMesh& patch, const std::vector<Index>& tangled, const Rim& rim,
+                          const InputNeighbourhood& input, const std::vector<Corners>& obstacles, int rings,
+                          const Progress& progress) {
+  for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
+    patch.move(v, as_stored(patch.position(v)));
+  PatchSurroundings surroundings(patch, input, obstacles);
+  std::vector<Triangle> triangles;
+  std::vector<char> gone(patch.triangle_count(), 0);
+  std::size_t closed = 0;
+  for (const Gap& gap : GapFinder(patch, rim).gaps(tangled, rings)) {
+    const std::vector<Triangle> filling = GapFiller(patch, gap, rim.forbidden, surroundings).fill(progress);
+    if (filling.empty()) continue;
+    ++closed;
+    for (Index t : gap.triangles) gone[t] = 1;
+    triangles.insert(triangles.end(), filling.begin(), filling.end());
+  }
+  if (closed == 0) return 0;
+  const std::size_t new_triangles = triangles.size();
+  for (Index t = 0; t < patch.triangle_count(); ++t)
+    if (patch.alive(t) && !gone[t]) triangles.push_back(patch.triangles()[t]);
+  patch = PatchMesh(patch.positions(), patch.rim_size(), std::move(triangles));
+  patch.compact();
+  GapRefiner(patch, new_triangles, rim.forbidden, surroundings).refine(progress);
+  return closed;
+}
+
+}  // namespace meshcomplete
