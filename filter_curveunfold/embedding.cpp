@@ -4,6 +4,7 @@
 #include "common/core/patch_remeshing.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace meshcomplete {
 namespace {
@@ -13,15 +14,27 @@ namespace {
 constexpr int solves = 2;
 constexpr int rounds_between = 2;
 
-// From this many vertices on a single solve has to do: the second one costs most of the time there, and the triangles
-// near the rim, which it improves, are few.
-constexpr std::size_t vertices_for_one_solve = 20000;
+// The first of the two solves only has to bring the triangles near to where they will be: on large patches, from this many
+// vertices on, it is done on a patch of edges so many times longer.
+constexpr std::size_t vertices_for_coarse_start = 1000;
+constexpr double coarsening = 2.0;
 
 std::vector<double> target_lengths(const Rim& rim, const EmbeddingOptions& options) {
   std::vector<double> target = rim.edge_length;
   if (options.edge_length) std::fill(target.begin(), target.end(), *options.edge_length);
   for (double& length : target) length /= options.resolution;
   return target;
+}
+
+// About how many vertices a patch of well-shaped triangles of this size has: two triangles per vertex.
+double expected_vertices(const PatchMesh& patch, const std::vector<double>& target) {
+  double triangles = 0;
+  for (Index t = 0; t < patch.triangle_count(); ++t) {
+    const Triangle& c = patch.triangles()[t];
+    const double side = (target[c[0]] + target[c[1]] + target[c[2]]) / 3;
+    triangles += 0.5 * patch.area_normal(t).norm() / (0.25 * std::sqrt(3.0) * side * side);
+  }
+  return 0.5 * triangles;
 }
 
 // The patch's triangles, followed by the ring's when the energy looks across the rim.
@@ -57,13 +70,17 @@ PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const Embeddi
   RemeshOptions remeshing;
   remeshing.forbidden = rim.forbidden;
   remeshing.rounds = rounds_between;
+  const bool coarse = expected_vertices(patch, target) > vertices_for_coarse_start;
+  if (coarse)
+    for (double& length : target) length *= coarsening;
   refine(patch, target, remeshing, progress);
   if (patch.vertex_count() > patch.rim_size()) {
     // The embedded flat triangulation is creased along its chords; the membrane with uniform weights, which cannot fold
     // more than its rim, is a safe start for everything that looks at angles.
     solve(patch, rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
-    const int count = patch.vertex_count() < vertices_for_one_solve ? solves : 1;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < solves; ++i) {
+      if (coarse && i == solves - 1)
+        for (double& length : target) length /= coarsening;
       remesh(patch, target, remeshing, progress);
       solve(patch, rim, options.energy, options.weights, progress.part(0.4 * i + 0.2, 0.4 * i + 0.6, ""));
     }

@@ -278,13 +278,14 @@ std::vector<Triangle> GapFiller::fill(const Progress& progress) {
   return {};
 }
 
-// Gives closed gaps the resolution of what is round them, by steps that meet nothing.
+// Gives a closed gap the resolution of what is round it, by steps that meet nothing.
 class GapRefiner {
  public:
-  /// The first `new_triangles` of the patch are those in gaps.
-  GapRefiner(PatchMesh& patch, std::size_t new_triangles, const ForbiddenEdges& forbidden, PatchSurroundings& surroundings)
+  /// The gap's triangles are those from `first` to before `last`.
+  GapRefiner(PatchMesh& patch, Index first, Index last, const ForbiddenEdges& forbidden, PatchSurroundings& surroundings)
       : patch_(patch), forbidden_(forbidden), surroundings_(surroundings) {
-    for (Index t = 0; t < new_triangles; ++t) triangles_.push_back(t);
+    for (Index t = first; t < last; ++t) triangles_.push_back(t);
+    surroundings.focus(triangles_);
   }
 
   void refine(const Progress& progress) {
@@ -316,7 +317,7 @@ class GapRefiner {
   PatchMesh& patch_;
   const ForbiddenEdges& forbidden_;
   PatchSurroundings& surroundings_;
-  std::vector<Index> triangles_;  // in gaps, ascending: new ones have the highest numbers
+  std::vector<Index> triangles_;  // in the gap, ascending: new ones have the highest numbers
   std::vector<Index> vertices_;   // new ones
   std::map<Index, double> target_;
 };
@@ -427,23 +428,27 @@ std::size_t retriangulate(PatchMesh& patch, const std::vector<Index>& tangled, c
     patch.move(v, as_stored(patch.position(v)));
   PatchSurroundings surroundings(patch, input, obstacles);
   std::vector<Triangle> triangles;
+  std::vector<Index> gap_ends;  // in `triangles`
   std::vector<char> gone(patch.triangle_count(), 0);
-  std::size_t closed = 0;
   for (const Gap& gap : GapFinder(patch, rim).gaps(tangled, rings)) {
+    surroundings.focus(gap.triangles);
     const std::vector<Triangle> filling = GapFiller(patch, gap, rim.forbidden, surroundings).fill(progress);
     if (filling.empty()) continue;
-    ++closed;
     for (Index t : gap.triangles) gone[t] = 1;
     triangles.insert(triangles.end(), filling.begin(), filling.end());
+    gap_ends.push_back(static_cast<Index>(triangles.size()));
   }
-  if (closed == 0) return 0;
-  const std::size_t new_triangles = triangles.size();
+  if (gap_ends.empty()) return 0;
   for (Index t = 0; t < patch.triangle_count(); ++t)
     if (patch.alive(t) && !gone[t]) triangles.push_back(patch.triangles()[t]);
   patch = PatchMesh(patch.positions(), patch.rim_size(), std::move(triangles));
   patch.compact();
-  GapRefiner(patch, new_triangles, rim.forbidden, surroundings).refine(progress);
-  return closed;
+  Index first = 0;
+  for (Index last : gap_ends) {
+    GapRefiner(patch, first, last, rim.forbidden, surroundings).refine(progress);
+    first = last;
+  }
+  return gap_ends.size();
 }
 
 }  // namespace meshcomplete

@@ -22,14 +22,28 @@ std::array<Vector3, 3> PatchSurroundings::corners(Index triangle) const {
   return {patch_.position(t[0]), patch_.position(t[1]), patch_.position(t[2])};
 }
 
+void PatchSurroundings::focus(const std::vector<Index>& triangles) {
+  in_focus_.clear();
+  first_after_ = patch_.triangle_count();
+  if (triangles.empty()) return;
+  TriangleBox box(corners(triangles.front()));
+  for (Index t : triangles) box.extend(TriangleBox(corners(t)));
+  box.widen((box.high - box.low).maxCoeff());
+  for (Index t = 0; t < first_after_; ++t)
+    if (patch_.alive(t) && box.meets(TriangleBox(corners(t)))) in_focus_.push_back(t);
+}
+
 void PatchSurroundings::collect(const TriangleBox& box, const std::function<bool(Index)>& left_out) {
   nearby_.clear();
   const auto remember = [&](const std::array<Vector3, 3>& c) {
     const TriangleBox own(c);
     if (box.meets(own) && !collinear(c[0], c[1], c[2])) nearby_.push_back({own, c});
   };
-  for (Index t = 0; t < patch_.triangle_count(); ++t)
+  const auto look_at = [&](Index t) {
     if (patch_.alive(t) && !left_out(t)) remember(corners(t));
+  };
+  for (Index t : in_focus_) look_at(t);
+  for (Index t = static_cast<Index>(first_after_); t < patch_.triangle_count(); ++t) look_at(t);
   const TriangleMesh& mesh = input_.mesh();
   for (Index t : input_.triangles_in_box(box.low, box.high)) {
     const Triangle& c = mesh.triangles[t];

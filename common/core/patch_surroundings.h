@@ -38,8 +38,11 @@ class PatchSurroundings {
                     const std::vector<std::array<Vector3, 3>>& obstacles);
 
   std::array<Vector3, 3> corners(Index triangle) const;
+  /// From now on only these triangles of the patch, and those made later, are looked at: for work in one place. They are the
+  /// ones that meet a box a good deal wider than that of `triangles`. Cost: O(patch).
+  void focus(const std::vector<Index>& triangles);
   /// Remembers what meets `box`: the patch's triangles, where `left_out` is false, the input's, and the obstacles.
-  /// Cost: O(patch + log faces + triangles found).
+  /// Cost: O(triangles in focus + log faces + triangles found).
   void collect(const TriangleBox& box, const std::function<bool(Index)>& left_out);
   /// The same round a star, a few triangles of the patch, whose vertices will move by at most `reach`.
   void collect_round(const std::vector<Index>& star, double reach);
@@ -56,6 +59,8 @@ class PatchSurroundings {
   const PatchMesh& patch_;
   const InputNeighbourhood& input_;
   std::vector<std::array<Vector3, 3>> obstacles_;  // those that the patch could reach
+  std::vector<Index> in_focus_;  // of the patch
+  std::size_t first_after_ = 0;  // triangles from here on are in focus too
   struct Nearby {
     TriangleBox box;
     std::array<Vector3, 3> corners;

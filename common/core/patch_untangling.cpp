@@ -84,6 +84,9 @@ std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Index> triangles = tangled;
+  for (Index v : vertices) patch_.for_outgoing(v, [&](Index h) { triangles.push_back(h / 3); });
+  surroundings_.focus(triangles);
   return vertices;
 }
 
