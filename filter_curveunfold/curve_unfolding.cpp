@@ -11,7 +11,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <exception>
+#include <mutex>
 #include <cmath>
 
 namespace meshcomplete {
@@ -93,11 +96,24 @@ void Run::record(std::size_t hole) {
 void Run::fill_all(const Progress& progress) {
   double total = 0;
   for (std::size_t hole : todo_) total += static_cast<double>(loops_[hole].vertices.size());
+  // No exception may reach TBB: it would cut short the loops that other threads run inside this one, which then return as
+  // if they were done.
+  std::mutex mutex;
+  std::exception_ptr error;
+  std::atomic<bool> failed{false};
   tbb::parallel_for(std::size_t(0), todo_.size(), [&](std::size_t i) {
+    if (failed) return;
     const std::size_t hole = todo_[i];
-    filled_[hole] = fill_hole(context_, loops_[hole], {}, progress);
-    progress.advance(static_cast<double>(loops_[hole].vertices.size()) / total);
+    try {
+      filled_[hole] = fill_hole(context_, loops_[hole], {}, progress);
+      progress.advance(static_cast<double>(loops_[hole].vertices.size()) / total);
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (!error) error = std::current_exception();
+      failed = true;
+    }
   });
+  if (error) std::rethrow_exception(error);
   for (std::size_t hole : todo_) record(hole);
 }
 

@@ -54,7 +54,8 @@ constexpr int most_untanglings = 3;
 // With more tangled triangles than this another energy or resolution is no help: only another triangulation may be.
 constexpr std::size_t most_to_try_again = 1000;
 
-// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape.
+// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape. Nor
+// with another unfolding when the patches of other holes are in its way: they are there whatever the unfolding.
 constexpr std::size_t most_triangles_to_refine = 5000;
 
 // Ways to the plane, each with another triangulation: what is asked for; descended even where a shorter way was found, so
@@ -294,7 +295,8 @@ FilledHole HoleFiller::fill() {
   int count = 0;
   for (const Try& plan : tries(context_.options, pinched_)) {
     progress_.check();
-    if (plan.resolution > 1.5 && triangles_ > most_triangles_to_refine) continue;
+    if ((plan.resolution > 1 || (plan.way != Way::asked && !obstacles_.empty())) && triangles_ > most_triangles_to_refine)
+      continue;
     std::string defect;
     try {
       if (!unfold_rim(plan) || hopeless_) continue;

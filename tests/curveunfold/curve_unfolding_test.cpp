@@ -424,10 +424,14 @@ TEST(CurveUnfolding, CanBeCancelledAtAnyTime) {
   ASSERT_GE(calls, 2);
   for (int stop = 1; stop <= std::min(calls - 1, 4); ++stop) {
     int call = 0;
-    EXPECT_THROW(fill_by_curve_unfolding(mesh, {}, {},
-                                         Progress([&](double, const std::string&) { return ++call < stop; })),
-                 Cancelled)
-        << stop;
+    bool cancelled = false;
+    try {
+      fill_by_curve_unfolding(mesh, {}, {}, Progress([&](double, const std::string&) { return ++call < stop; }));
+    } catch (const Cancelled&) {
+      cancelled = true;
+    }
+    // How often it is called depends on the time it takes.
+    EXPECT_EQ(cancelled, call >= stop) << stop;
   }
 }
 
