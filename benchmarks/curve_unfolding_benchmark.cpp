@@ -1,14 +1,21 @@
 // Prints how hole filling by curve unfolding fares from the mesh to the patch: holes of the sizes of the
-// paper's table 1, its model with eight holes, long holes, and a large mesh. `unfolding_benchmark` looks at
+// paper's table 1, its model with eight holes, long holes, and large meshes. `unfolding_benchmark` looks at
 // the unfolding alone.
 //
-//   curve_unfolding_benchmark [table|eight|long|large]...      without arguments: all
+//   curve_unfolding_benchmark [table|eight|long|large|beside]... [MESH...]     without a word: all
+//
+// With meshes, `table` takes their holes as they are, one by one and all together, and cuts winding holes
+// into those that have none; `eight` cuts eight holes into the first; `beside` closes their holes by turns
+// with CGAL, those of whole meshes after they have been refined to a million faces and got six holes.
+// Without, meshes are made in code.
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <fstream>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -16,6 +23,9 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/cgal_filling.h"
+#include "benchmarks/cut_holes.h"
+#include "benchmarks/mesh_file.h"
 #include "common/core/error.h"
 #include "filter_curveunfold/curve_unfolding.h"
 #include "filter_curveunfold/loop_geometry.h"
@@ -24,10 +34,13 @@
 namespace {
 
 using namespace meshcomplete;
+using benchmarks::CutMesh;
+using benchmarks::Rim;
 using Clock = std::chrono::steady_clock;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double patience = 120;  // seconds that a hole may take before it is given up
+constexpr double patience = 120;       // seconds that a run may take before it is given up
+constexpr double long_patience = 600;  // the same for the annealing of eight holes
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -167,89 +180,213 @@ std::string joined(const std::set<std::string>& texts) {
   return line;
 }
 
-struct Spread {
-  double mean = 0, deviation = 0;
-};
+/// Mean, least and greatest of what ten seeds gave, for a table.
+std::string spread(const std::vector<double>& values, int digits) {
+  if (values.empty()) return "–";
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  char text[80];
+  std::snprintf(text, sizeof text, "%.*f (%.*f–%.*f)", digits, mean, digits, *least, digits, *greatest);
+  return text;
+}
 
-Spread spread(const std::vector<Sample>& samples, double Sample::*value) {
-  Spread s;
-  const double n = static_cast<double>(samples.size());
-  for (const Sample& sample : samples) s.mean += sample.*value / n;
-  for (const Sample& sample : samples) s.deviation += (sample.*value - s.mean) * (sample.*value - s.mean) / n;
-  s.deviation = std::sqrt(s.deviation);
-  return s;
+std::vector<double> values(const std::vector<Sample>& samples, double Sample::*value) {
+  std::vector<double> list;
+  for (const Sample& sample : samples)
+    if (!sample.gave_up) list.push_back(sample.*value);
+  return list;
+}
+
+double median(std::vector<double> list) {
+  std::sort(list.begin(), list.end());
+  const std::size_t half = list.size() / 2;
+  return list.size() % 2 ? list[half] : 0.5 * (list[half - 1] + list[half]);
 }
 
 // --- tables
 // --------------------------------------------------------------------------------------------------------
 
-/// Ten seeds of the annealing as published with both of the paper's energies, and the default once.
-void table_line(const char* model, const TriangleMesh& mesh) {
-  std::vector<Sample> membrane, thin_plate;
-  CurveUnfoldingOptions options;
-  options.unfolding.method = UnfoldMethod::annealing;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    options.unfolding.seed = seed;
-    options.energy = SurfaceEnergy::membrane;
-    membrane.push_back(run(mesh, options));
-    options.energy = SurfaceEnergy::thin_plate;
-    thin_plate.push_back(run(mesh, options));
-  }
-  const Sample ours = run(mesh, CurveUnfoldingOptions());
-  std::size_t rim = 0, holes = 0;
-  for (const BoundaryLoop& loop : loops_of(mesh)) rim += loop.vertices.size(), ++holes;
-  const double per_hole = 1.0 / static_cast<double>(holes);
-  const Spread restarts = spread(membrane, &Sample::restarts), steps = spread(membrane, &Sample::steps);
-  const Spread unfolding = spread(membrane, &Sample::unfolding);
-  const auto closed = [](const std::vector<Sample>& samples) {
-    return std::count_if(samples.begin(), samples.end(), [](const Sample& s) { return s.closed; });
-  };
-  std::printf(
-      "| %s | %zu | %zu | %.1f ± %.1f | %.0f ± %.0f | %.3f ± %.3f | %ld | %.3f | %ld | %.3f | %.4f | %.3f | "
-      "%s |\n",
-      model, mesh.vertices.size(), rim, restarts.mean * per_hole, restarts.deviation * per_hole, steps.mean,
-      steps.deviation, unfolding.mean, unfolding.deviation, static_cast<long>(closed(membrane)),
-      spread(membrane, &Sample::embedding).mean, static_cast<long>(closed(thin_plate)),
-      spread(thin_plate, &Sample::embedding).mean, ours.unfolding, ours.embedding,
-      joined(ours.routes).c_str());
+struct Case {
+  std::string model;
+  TriangleMesh mesh;
+  std::vector<std::vector<Vector3>> rims;  // that are to be closed
+  MeshSelection selection;                 // of them, when there are others
+};
+
+Case all_loops(const std::string& model, const TriangleMesh& mesh) {
+  Case all{model, mesh, {}, {}};
+  for (const BoundaryLoop& loop : loops_of(mesh))
+    if (loop.defect == LoopDefect::none) all.rims.push_back(points(mesh, loop));
+  return all;
 }
 
-void table_one() {
+/// Ten seeds of the annealing as published: the unfolding alone, and where that succeeds the filter with both
+/// of the paper's energies; and the default once.
+void table_line(const Case& hole) {
+  std::vector<double> restarts, steps, seconds;
+  std::vector<Sample> samples[2];
+  CurveUnfoldingOptions options;
+  options.holes.selected_only = !hole.selection.vertices.empty();
+  const Sample ours = run(hole.mesh, options, hole.selection);
+  options.unfolding.method = UnfoldMethod::annealing;
+  for (options.unfolding.seed = 1; options.unfolding.seed <= 10; ++options.unfolding.seed) {
+    std::size_t unfolded = 0;
+    restarts.push_back(0), steps.push_back(0), seconds.push_back(0);
+    for (const std::vector<Vector3>& rim : hole.rims) {
+      const Unfolding result = unfold(rim, options.unfolding);
+      unfolded += result.outcome == UnfoldOutcome::annealed;
+      restarts.back() += result.restarts / static_cast<double>(hole.rims.size());
+      steps.back() += static_cast<double>(result.steps);
+      seconds.back() += result.seconds;
+    }
+    if (unfolded < hole.rims.size()) continue;
+    for (const int thin_plate : {0, 1}) {
+      options.energy = thin_plate ? SurfaceEnergy::thin_plate : SurfaceEnergy::membrane;
+      samples[thin_plate].push_back(run(hole.mesh, options, hole.selection));
+    }
+  }
+  std::size_t points = 0;
+  for (const std::vector<Vector3>& rim : hole.rims) points += rim.size();
+  const auto closed = [](const std::vector<Sample>& list) {
+    return static_cast<long>(
+        std::count_if(list.begin(), list.end(), [](const Sample& s) { return s.closed; }));
+  };
+  std::printf("| %s | %zu | %zu | %zu | %s | %s | %s | %ld | %s | %ld | %s | %.4f | %.4f | %s |\n",
+              hole.model.c_str(), hole.mesh.vertices.size(), points, samples[0].size(),
+              spread(restarts, 1).c_str(), spread(steps, 0).c_str(), spread(seconds, 3).c_str(),
+              closed(samples[0]), spread(values(samples[0], &Sample::embedding), 3).c_str(),
+              closed(samples[1]), spread(values(samples[1], &Sample::embedding), 3).c_str(), ours.unfolding,
+              ours.embedding, joined(ours.routes).c_str());
+}
+
+/// Winding holes of the paper's sizes in a whole mesh, four edges wide: for each size the first three seeds
+/// that give a strongly curved one. Which seeds those are does not depend on how hard the rims are to unfold.
+void winding_lines(const std::string& model, const TriangleMesh& mesh) {
+  for (const std::size_t size : {35, 33, 53, 63}) {
+    std::uint32_t seed = 1;
+    for (int i = 0; i < 3; ++i) {
+      const std::optional<CutMesh> cut =
+          benchmarks::cut_winding_hole(mesh, size, Rim::strongly_curved, seed, {}, 2);
+      if (!cut) break;
+      seed = cut->seed + 1;
+      table_line({model + ", cut " + std::to_string(cut->seed), cut->mesh, {cut->rim}, {}});
+    }
+  }
+}
+
+/// The holes of a mesh, one by one and all together, without those that cannot be closed.
+void hole_lines(const std::string& model, const TriangleMesh& mesh) {
+  Case all{model + ", all these", mesh, {}, {}};
+  all.selection.vertices.assign(mesh.vertices.size(), false);
+  for (const BoundaryLoop& loop : loops_of(mesh)) {
+    if (loop.defect != LoopDefect::none) {
+      std::fprintf(stderr, "%s: left out a rim of %zu vertices: %s\n", model.c_str(), loop.vertices.size(),
+                   describe(loop.defect).c_str());
+      continue;
+    }
+    Case one{model + ", one hole", mesh, {points(mesh, loop)}, {}};
+    one.selection.vertices.assign(mesh.vertices.size(), false);
+    for (Index v : loop.vertices) one.selection.vertices[v] = all.selection.vertices[v] = true;
+    all.rims.push_back(one.rims[0]);
+    table_line(one);
+  }
+  table_line(all);
+}
+
+std::string file_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+
+void table_one(const std::vector<std::string>& files) {
   std::printf(
-      "\nTen seeds of the annealing, and the default; seconds; the paper's d is the restarts per hole\n\n"
-      "| model | n | m | restarts | steps | annealing | membrane closed | embedding | thin plate closed "
-      "| embedding | default: unfolding | embedding | route |\n"
-      "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n");
-  table_line("five holes", five_holes());
+      "\nTen seeds of the annealing, and the default; seconds; mean (least–greatest)\n\n"
+      "| hole | n | m | unfolded of 10 | restarts | steps | annealing s | membrane: closed of 10 | embedding "
+      "s "
+      "| thin plate: closed of 10 | embedding s | default: unfolding s | embedding s | route |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n");
+  for (const std::string& file : files) {
+    const TriangleMesh mesh = benchmarks::read_mesh(file);
+    if (loops_of(mesh).empty())
+      winding_lines(file_name(file), mesh);
+    else
+      hole_lines(file_name(file), mesh);
+  }
+  if (!files.empty()) return;
+  table_line(all_loops("ball, five holes", five_holes()));
   for (const std::size_t size : {35, 33, 53, 63}) {
     const std::optional<TriangleMesh> mesh = strongly_curved(3, size);
-    if (mesh) table_line("winding hole", *mesh);
+    if (mesh) table_line(all_loops("ball, winding hole", *mesh));
   }
 }
 
-void eight_holes() {
+/// As many rim vertices in eight holes as the paper's chicken has.
+constexpr std::size_t eight_sizes[] = {30, 53, 53, 70, 84, 96, 120, 160};
+
+/// Eight winding holes in one mesh.
+TriangleMesh with_eight_holes(TriangleMesh mesh) {
+  std::uint32_t seed = 1;
+  for (const std::size_t size : eight_sizes) {
+    const std::optional<CutMesh> cut =
+        benchmarks::cut_winding_hole(mesh, size, Rim::strongly_curved, seed, {}, 2);
+    if (!cut) continue;
+    mesh = cut->mesh;
+    seed = cut->seed + 1;
+  }
+  return mesh;
+}
+
+/// Eight winding holes in balls of their own.
+TriangleMesh eight_balls() {
   TriangleMesh model;
-  std::size_t rim = 0, holes = 0;
-  for (const std::size_t size : {30, 53, 53, 70, 84, 96, 120, 160}) {
-    std::optional<TriangleMesh> ball = strongly_curved(size < 80 ? 4 : 5, size);
-    if (!ball) continue;
-    model = test::join(model, test::translated(*ball, Vector3(3.0 * static_cast<double>(holes++), 0, 0)));
-    rim += size;
+  double place = 0;
+  for (const std::size_t size : eight_sizes) {
+    const std::optional<TriangleMesh> ball = strongly_curved(size < 80 ? 4 : 5, size);
+    if (ball) model = test::join(model, test::translated(*ball, Vector3(3 * place++, 0, 0)));
   }
+  return model;
+}
+
+void eight_holes(const std::vector<std::string>& files) {
+  const Case model = files.empty()
+                         ? all_loops("balls", eight_balls())
+                         : all_loops(file_name(files[0]), with_eight_holes(benchmarks::read_mesh(files[0])));
+  std::size_t rim = 0;
+  for (const std::vector<Vector3>& loop : model.rims) rim += loop.size();
   std::printf(
-      "\n%zu strongly curved holes, %zu rim vertices, mesh of %zu vertices\n\n"
-      "| unfolding by | seconds unfolding | embedding | checking | filter | faces | all closed |\n"
+      "\n%s: %zu strongly curved holes, %zu rim vertices, mesh of %zu vertices; seconds\n\n"
+      "| energy | unfolding | embedding | checking | filter | faces | outcome |\n"
       "|---|---:|---:|---:|---:|---:|---|\n",
-      holes, rim, model.vertices.size());
-  for (const UnfoldMethod method : {UnfoldMethod::automatic, UnfoldMethod::annealing}) {
+      model.model.c_str(), model.rims.size(), rim, model.mesh.vertices.size());
+  for (const SurfaceEnergy energy : {SurfaceEnergy::thin_plate, SurfaceEnergy::membrane}) {
     CurveUnfoldingOptions options;
-    options.unfolding.method = method;
-    const Sample sample = run(model, options);
-    std::printf("| %s | %.3f | %.3f | %.3f | %.3f | %zu | %s |\n",
-                method == UnfoldMethod::automatic ? "default" : "annealing", sample.unfolding,
+    options.energy = energy;
+    const Sample sample = run(model.mesh, options);
+    std::printf("| %s | %.3f | %.3f | %.3f | %.3f | %zu | %s: %s |\n",
+                energy == SurfaceEnergy::membrane ? "membrane" : "thin plate", sample.unfolding,
                 sample.embedding, sample.checking, sample.wall, sample.faces,
-                sample.closed ? "yes" : joined(sample.routes).c_str());
+                sample.closed ? "all closed" : "not all closed", joined(sample.routes).c_str());
   }
+
+  std::printf(
+      "\nAnnealing, one seed, one hole after the other, %.0f s at most\n\n"
+      "| m | runs | steps | s | unfolded |\n|---:|---:|---:|---:|---|\n",
+      long_patience);
+  const Clock::time_point start = Clock::now();
+  std::size_t unfolded = 0;
+  for (const std::vector<Vector3>& loop : model.rims) {
+    UnfoldOptions options;
+    options.method = UnfoldMethod::annealing;
+    const Clock::time_point begin = Clock::now();
+    try {
+      const Unfolding result =
+          unfold(loop, options,
+                 Progress([&](double, const std::string&) { return seconds_since(start) < long_patience; }));
+      unfolded += !result.polygon.empty();
+      std::printf("| %zu | %d | %zu | %.2f | %s |\n", loop.size(), result.restarts, result.steps,
+                  result.seconds, result.polygon.empty() ? "no" : "yes");
+    } catch (const Cancelled&) {
+      std::printf("| %zu | | | %.2f | given up |\n", loop.size(), seconds_since(begin));
+    }
+  }
+  std::printf("| %zu | | | %.2f | %zu of %zu |\n", rim, seconds_since(start), unfolded, model.rims.size());
 }
 
 void long_holes() {
@@ -286,15 +423,82 @@ void large_mesh() {
               sample.wall, sample.faces, sample.closed ? "all closed" : joined(sample.routes).c_str());
 }
 
+/// A whole mesh refined to a million faces or more, with six winding holes.
+TriangleMesh large_with_holes(TriangleMesh mesh) {
+  while (mesh.triangles.size() < 1000000) mesh = benchmarks::subdivided(mesh);
+  for (const std::size_t size : {60, 100, 150, 200, 300, 400}) {
+    const std::optional<CutMesh> cut = benchmarks::cut_winding_hole(mesh, size, Rim::any, 1, {}, 3);
+    if (cut) mesh = cut->mesh;
+  }
+  return mesh;
+}
+
+std::string load_average() {
+  std::ifstream file("/proc/loadavg");
+  std::string one;
+  return file >> one ? one : "unknown";
+}
+
+/// The filter and CGAL by turns on the same mesh in memory.
+void beside_cgal(const std::vector<std::string>& files) {
+  std::printf(
+      "\nBy turns, seven times; seconds; median (least–greatest)\n\n"
+      "| mesh | faces | rims | filter | closed | faces added | CGAL filling | filled | faces added "
+      "| CGAL with its own mesh made and read back | load |\n"
+      "|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+  for (const std::string& file : files) {
+    TriangleMesh mesh = benchmarks::read_mesh(file);
+    if (loops_of(mesh).empty()) mesh = large_with_holes(mesh);
+    std::string rims;
+    for (const BoundaryLoop& loop : loops_of(mesh))
+      rims += (rims.empty() ? "" : ", ") + std::to_string(loop.vertices.size());
+    std::vector<double> ours, filling, whole;
+    Sample sample;
+    benchmarks::CgalFilling cgal;
+    for (int i = 0; i < 7; ++i) {
+      sample = run(mesh, CurveUnfoldingOptions());
+      ours.push_back(sample.wall);
+      const Clock::time_point start = Clock::now();
+      cgal = benchmarks::fill_with_cgal(mesh);
+      whole.push_back(seconds_since(start));
+      filling.push_back(cgal.seconds);
+    }
+    const auto text = [](const std::vector<double>& list) {
+      const auto [least, greatest] = std::minmax_element(list.begin(), list.end());
+      char line[80];
+      std::snprintf(line, sizeof line, "%.3f (%.3f–%.3f)", median(list), *least, *greatest);
+      return std::string(line);
+    };
+    std::printf("| %s | %zu | %s | %s | %s | %zu | %s | %zu of %zu | %zu | %s | %s |\n",
+                file_name(file).c_str(), mesh.triangles.size(), rims.c_str(), text(ours).c_str(),
+                sample.closed ? "all" : "not all", sample.faces, text(filling).c_str(), cgal.filled,
+                cgal.holes, cgal.mesh.triangles.size() - mesh.triangles.size(), text(whole).c_str(),
+                load_average().c_str());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a table that grows as it is measured
-  const std::set<std::string> asked(argv + 1, argv + argc);
+  const std::set<std::string> words = {"table", "eight", "long", "large", "beside"};
+  std::set<std::string> asked;
+  std::vector<std::string> files;
+  for (int i = 1; i < argc; ++i)
+    if (words.count(argv[i]))
+      asked.insert(argv[i]);
+    else
+      files.push_back(argv[i]);
   const auto wanted = [&](const char* name) { return asked.empty() || asked.count(name) > 0; };
-  if (wanted("table")) table_one();
-  if (wanted("eight")) eight_holes();
-  if (wanted("long")) long_holes();
-  if (wanted("large")) large_mesh();
+  try {
+    if (wanted("table")) table_one(files);
+    if (wanted("eight")) eight_holes(files);
+    if (wanted("long")) long_holes();
+    if (wanted("large")) large_mesh();
+    if (wanted("beside")) beside_cgal(files);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
   return 0;
 }
