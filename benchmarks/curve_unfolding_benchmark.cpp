@@ -5,9 +5,9 @@
 //   curve_unfolding_benchmark [table|eight|long|large|beside]... [MESH...]     without a word: all
 //
 // With meshes, `table` takes their holes as they are, one by one and all together, and cuts winding holes
-// into those that have none; `eight` cuts eight holes into the first; `beside` closes their holes by turns
-// with CGAL, those of whole meshes after they have been refined to a million faces and got six holes.
-// Without, meshes are made in code.
+// into those that have none; `eight` cuts eight holes into the first; `long` refines each to a million faces
+// and cuts long ones into it; `beside` closes their holes by turns with CGAL, those of whole meshes after
+// they have been refined to a million faces and got six holes. Without, meshes are made in code.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -21,6 +21,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/cgal_filling.h"
@@ -389,7 +390,29 @@ void eight_holes(const std::vector<std::string>& files) {
   std::printf("| %zu | | | %.2f | %zu of %zu |\n", rim, seconds_since(start), unfolded, model.rims.size());
 }
 
-void long_holes() {
+/// Prints the line of one hole; returns what the hole alone took, nothing when it was not closed.
+std::optional<double> long_line(const std::string& title, std::size_t size, const TriangleMesh& mesh,
+                                const CurveUnfoldingOptions& options, const MeshSelection& selection) {
+  const Sample sample = run(mesh, options, selection);
+  std::printf("| %s | %zu | %.3f | %.3f | %.3f | %.3f | %zu | %s |\n", title.c_str(), size, sample.unfolding,
+              sample.embedding, sample.checking, sample.wall, sample.faces,
+              sample.gave_up ? "given up" : joined(sample.routes).c_str());
+  if (!sample.closed) return std::nullopt;
+  return sample.unfolding + sample.embedding + sample.checking;
+}
+
+void print_growth(const std::vector<double>& sizes, const std::vector<double>& seconds) {
+  if (sizes.size() > 1)
+    std::printf("| exponent of growth, %.0f to %.0f | | | | | %.2f | | |\n", sizes.front(), sizes.back(),
+                std::log(seconds.back() / seconds.front()) / std::log(sizes.back() / sizes.front()));
+}
+
+TriangleMesh refined_to_a_million(TriangleMesh mesh) {
+  while (mesh.triangles.size() < 1000000) mesh = benchmarks::subdivided(mesh);
+  return mesh;
+}
+
+void long_holes(const std::vector<std::string>& files) {
   std::printf(
       "\nLong holes, seconds\n\n"
       "| hole | m | unfolding | embedding | checking | filter | faces | route |\n"
@@ -397,22 +420,30 @@ void long_holes() {
   for (const int half_turns : {0, 5}) {
     std::vector<double> sizes, seconds;
     for (const int size : {500, 2000, 10000}) {
-      const TriangleMesh mesh = long_gap(size, half_turns);
       CurveUnfoldingOptions options;
       options.holes.selected_only = true;  // the other rim of the walls stays open
+      const TriangleMesh mesh = long_gap(size, half_turns);
       MeshSelection selection;
       selection.vertices.assign(mesh.vertices.size(), false);
       std::fill_n(selection.vertices.begin(), size, true);
-      const Sample sample = run(mesh, options, selection);
-      std::printf("| %s | %d | %.3f | %.3f | %.3f | %.3f | %zu | %s |\n",
-                  half_turns == 0 ? "wavy" : "twisted", size, sample.unfolding, sample.embedding,
-                  sample.checking, sample.wall, sample.faces,
-                  sample.gave_up ? "given up" : joined(sample.routes).c_str());
-      if (!sample.gave_up) sizes.push_back(size), seconds.push_back(sample.wall);
+      const auto taken = long_line(half_turns == 0 ? "wavy gap" : "twisted gap",
+                                   static_cast<std::size_t>(size), mesh, options, selection);
+      if (taken) sizes.push_back(size), seconds.push_back(*taken);
     }
-    if (sizes.size() > 1)
-      std::printf("| exponent of growth | | | | | %.2f | | |\n",
-                  std::log(seconds.back() / seconds.front()) / std::log(sizes.back() / sizes.front()));
+    print_growth(sizes, seconds);
+  }
+  for (const std::string& file : files) {
+    const TriangleMesh mesh = refined_to_a_million(benchmarks::read_mesh(file));
+    std::vector<double> sizes, seconds;
+    for (const std::size_t size : {500, 1000, 2000}) {
+      const std::optional<CutMesh> cut =
+          benchmarks::cut_winding_hole(mesh, size, Rim::strongly_curved, 1, {}, 3);
+      if (!cut) continue;
+      const auto taken = long_line(file_name(file) + ", " + std::to_string(mesh.triangles.size()) + " faces",
+                                   size, cut->mesh, CurveUnfoldingOptions(), MeshSelection());
+      if (taken) sizes.push_back(static_cast<double>(size)), seconds.push_back(*taken);
+    }
+    print_growth(sizes, seconds);
   }
 }
 
@@ -425,7 +456,7 @@ void large_mesh() {
 
 /// A whole mesh refined to a million faces or more, with six winding holes.
 TriangleMesh large_with_holes(TriangleMesh mesh) {
-  while (mesh.triangles.size() < 1000000) mesh = benchmarks::subdivided(mesh);
+  mesh = refined_to_a_million(std::move(mesh));
   for (const std::size_t size : {60, 100, 150, 200, 300, 400}) {
     const std::optional<CutMesh> cut = benchmarks::cut_winding_hole(mesh, size, Rim::any, 1, {}, 3);
     if (cut) mesh = cut->mesh;
@@ -493,7 +524,7 @@ int main(int argc, char** argv) {
   try {
     if (wanted("table")) table_one(files);
     if (wanted("eight")) eight_holes(files);
-    if (wanted("long")) long_holes();
+    if (wanted("long")) long_holes(files);
     if (wanted("large")) large_mesh();
     if (wanted("beside")) beside_cgal(files);
   } catch (const std::exception& error) {
