@@ -156,7 +156,10 @@ void Run::separate(const Progress& progress) {
       filled_[first].patch = Patch();
       filled_[first] = fill_hole(soft_context, loops_[first], patches_but(first), progress);
       if (!filled_[first].patch.empty()) filled_[second] = fill_hole(soft_context, loops_[second], patches_but(second), progress);
-      if (filled_[second].patch.empty()) filled_[first] = std::move(kept);
+      if (filled_[second].patch.empty()) {
+        filled_[first] = std::move(kept);
+        filled_[second].reason = "the patch meets the patch of another hole";
+      }
     }
     record(first);
     record(second);
@@ -168,7 +171,7 @@ TriangleMesh lay_out(const std::vector<FilledHole>& filled) {
   TriangleMesh sheet;
   double left = 0;
   for (const FilledHole& hole : filled) {
-    if (hole.patch.empty()) continue;
+    if (hole.patch.empty() || hole.flat.empty()) continue;
     Eigen::AlignedBox2d box;
     for (const Eigen::Vector2d& p : hole.polygon) box.extend(p);
     const Index first = static_cast<Index>(sheet.vertices.size());

@@ -16,7 +16,7 @@ constexpr int rounds_between = 2;
 
 // The first of the two solves only has to bring the triangles near to where they will be: on large patches, from this many
 // vertices on, it is done on a patch of edges so many times longer.
-constexpr std::size_t vertices_for_coarse_start = 1000;
+constexpr double vertices_for_coarse_start = 1000;
 constexpr double coarsening = 2.0;
 
 std::vector<double> target_lengths(const Rim& rim, const EmbeddingOptions& options) {
@@ -70,7 +70,9 @@ PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const Embeddi
   RemeshOptions remeshing;
   remeshing.forbidden = rim.forbidden;
   remeshing.rounds = rounds_between;
-  const bool coarse = expected_vertices(patch, target) > vertices_for_coarse_start;
+  // A patch that would be too large is refined at once, and refused.
+  const double expected = expected_vertices(patch, target);
+  const bool coarse = expected > vertices_for_coarse_start && expected < static_cast<double>(remeshing.max_vertices);
   if (coarse)
     for (double& length : target) length *= coarsening;
   refine(patch, target, remeshing, progress);

@@ -6,6 +6,7 @@
 #include "common/core/patch_untangling.h"
 #include "common/core/rim.h"
 #include "common/core/triangle_intersection.h"
+#include "filter_curveunfold/divided_rim.h"
 #include "filter_curveunfold/embedding.h"
 #include "filter_curveunfold/pinched_rim.h"
 #include "filter_curveunfold/polygon_triangulation.h"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace meshcomplete {
@@ -59,8 +61,13 @@ constexpr std::size_t most_to_try_again = 1000;
 constexpr std::size_t most_triangles_to_refine = 5000;
 
 // Ways to the plane, each with another triangulation: what is asked for; descended even where a shorter way was found, so
-// that the rim develops as a whole; and opened further towards a convex polygon.
-enum class Way { asked, descended, stretched };
+// that the rim develops as a whole; opened further towards a convex polygon; and divided by a chord into rims that are
+// unfolded each by itself.
+enum class Way { asked, descended, stretched, divided };
+
+// How many chords are tried, and how often their sides are divided again.
+constexpr std::size_t most_chords = 4;
+constexpr int divisions = 2;
 
 // One way to close the hole.
 struct Try {
@@ -68,6 +75,7 @@ struct Try {
   SurfaceEnergy energy;
   double resolution;
   double flap_height;  // of the flaps that open a pinched rim
+  std::size_t chord = 0;  // of the best chords, to divide the rim by
 };
 
 // What is asked for, then the others from stiff to soft: a membrane overshoots least.
@@ -92,6 +100,9 @@ std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
       if (way == Way::asked && height == heights.front()) list.push_back({way, options.energy, 2.0, height});
     }
   }
+  for (std::size_t chord = 0; chord < most_chords; ++chord)
+    for (SurfaceEnergy energy : {SurfaceEnergy::thin_plate, SurfaceEnergy::membrane})
+      list.push_back({Way::divided, energy, 1.0, heights.front(), chord});
   return list;
 }
 
@@ -147,7 +158,8 @@ class HoleFiller {
   const bool pinched_;
   OpenedRim opened_;  // what is unfolded and filled
   Unfolding unfolding_;
-  std::optional<std::pair<Way, double>> unfolded_;  // way and flap height: what `result_.flat` belongs to
+  std::optional<std::tuple<Way, double, std::size_t>> unfolded_;  // way, flap height, chord: what is at hand
+  std::vector<Chord> chords_;
   FilledHole result_;
   bool mended_ = false;
   int untanglings_ = 0;
@@ -157,13 +169,19 @@ class HoleFiller {
 
 // Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is none yet.
 bool HoleFiller::unfold_rim(const Try& plan) {
-  const std::pair wanted(plan.way, plan.flap_height);
-  if (unfolded_ == wanted) return !result_.flat.empty();
+  const std::tuple wanted(plan.way, plan.flap_height, plan.chord);
+  const bool divided = plan.way == Way::divided;
+  if (unfolded_ == wanted) return divided ? plan.chord < chords_.size() : !result_.flat.empty();
   unfolded_ = wanted;
   untanglings_ = 0;
   hopeless_ = false;
-  result_.flat.clear();
   opened_ = open_pinches(rim_, plan.flap_height);
+  if (divided) {
+    if (plan.chord == 0 && unfolding_.outcome != UnfoldOutcome::knotted)
+      chords_ = chords(opened_.rim, context_.neighbourhood, most_chords);
+    return plan.chord < chords_.size();
+  }
+  result_.flat.clear();
   UnfoldOptions options = context_.options.unfolding;
   options.stretch = plan.way == Way::stretched;
   if (plan.way == Way::descended) options.method = UnfoldMethod::descent;
@@ -172,7 +190,8 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   result_.times.restarts += unfolding.restarts;
   result_.times.steps += unfolding.steps;
   if (unfolding.polygon.empty()) {
-    if (result_.reason.empty()) result_.reason = why_not_unfolded(unfolding);
+    unfolding_ = std::move(unfolding);
+    if (result_.reason.empty()) result_.reason = why_not_unfolded(unfolding_);
     return false;
   }
   const auto start = Clock::now();
@@ -229,7 +248,10 @@ std::string HoleFiller::attempt(const Try& plan) {
   options.edge_length = context_.options.edge_length;
   options.resolution = plan.resolution;
   mended_ = false;
-  PatchMesh embedded = embed(opened_.rim, result_.flat, options, progress_);
+  PatchMesh embedded = plan.way == Way::divided
+                           ? embed_divided(opened_.rim, chords_[plan.chord], context_.neighbourhood,
+                                           context_.options.unfolding, options, divisions, progress_)
+                           : embed(opened_.rim, result_.flat, options, progress_);
   result_.times.embedding += seconds_since(start);
   triangles_ = embedded.triangle_count();
   std::string defect;
@@ -274,8 +296,9 @@ bool HoleFiller::mend(PatchMesh& embedded, const std::vector<Index>& tangled, co
 
 std::string HoleFiller::route(const Try& plan, int count) const {
   std::string route = unfolding_name(unfolding_.outcome);
-  if (pinched_) route = "opened where the rim touches itself, " + route;
   if (plan.way == Way::stretched) route += " and stretched";
+  if (plan.way == Way::divided) route = "divided by a chord";
+  if (pinched_) route = "opened where the rim touches itself, " + route;
   route += std::string(", ") + name(plan.energy);
   if (plan.resolution > 1) route += ", finer";
   if (mended_) route += ", mended locally";

@@ -109,6 +109,22 @@ TEST(HoleFiller, BothUnfoldingMethods) {
   EXPECT_GE(annealed.times.restarts, 1);
 }
 
+// One flat triangulation does not serve it: its patch would pass through itself.
+TEST(HoleFiller, ALongRimWoundRoundACylinderIsDivided) {
+  std::vector<Vector3> outer;
+  const std::vector<Vector3> rim = testing::wound_round_cylinder(200, 2);
+  for (const Vector3& p : rim) outer.push_back(0.97 * p);
+  const Scene scene(test::collar(rim, outer));
+  bool divided = false;
+  for (std::size_t loop = 0; loop < scene.loops.size(); ++loop) {
+    const FilledHole filled = scene.fill(loop);
+    EXPECT_EQ(filled.reason, "");
+    EXPECT_TRUE(scene.passes(filled.patch, loop));
+    divided |= mentions(filled.route, "divided by a chord");
+  }
+  EXPECT_TRUE(divided);
+}
+
 // No projection of it is simple.
 TEST(HoleFiller, ARimWoundRoundACylinderIsUntangled) {
   std::vector<Vector3> outer;
