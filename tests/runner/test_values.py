@@ -50,6 +50,8 @@ class Values(RunnerCase):
     def test_choices(self):
         self.assertEqual(self.logged("Kind=2")["Kind"], "2")
         self.assertEqual(self.logged("Kind=Automatic")["Kind"], "0")
+        self.assertEqual(self.logged("Kind=anneal")["Kind"], "1")
+        self.assertIn("is not one of the choices", self.wrong("Kind=a"), "automatic and annealing begin so")
         self.assertIn('Did you mean "descent"?', self.wrong("Kind=decsent"))
         self.assertIn("0 = automatic", self.wrong("Kind=3"))
 

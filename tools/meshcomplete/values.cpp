@@ -140,6 +140,14 @@ class ValueParser {
     if (fine && position >= 0 && position < parameter_.choices.size()) return position;
     for (int i = 0; i < parameter_.choices.size(); ++i)
       if (parameter_.choices[i].compare(text_, Qt::CaseInsensitive) == 0) return i;
+    // The beginning of a name will do when it is that of one only.
+    int found = -1, beginnings = 0;
+    for (int i = 0; i < parameter_.choices.size() && !text_.isEmpty(); ++i)
+      if (parameter_.choices[i].startsWith(text_, Qt::CaseInsensitive)) {
+        found = i;
+        ++beginnings;
+      }
+    if (beginnings == 1) return found;
     wrong("is not one of the choices", fine ? QString() : did_you_mean(text_, parameter_.choices));
   }
 
