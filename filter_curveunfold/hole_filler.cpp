@@ -163,7 +163,8 @@ class HoleFiller {
   FilledHole result_;
   bool mended_ = false;
   int untanglings_ = 0;
-  bool hopeless_ = false;  // with the flat triangulation at hand
+  bool hopeless_ = false;     // with the flat triangulation at hand
+  bool all_hopeless_ = true;  // with all of them
   std::size_t triangles_ = 0;  // of the last embedded patch
 };
 
@@ -272,8 +273,9 @@ std::string HoleFiller::attempt(const Try& plan) {
       patch = as_patch(embedded);
       tangled = tangled_triangles(patch, defect);
     }
-    hopeless_ = tangled.size() > most_to_try_again;
   }
+  hopeless_ = tangled.size() > most_to_try_again;
+  all_hopeless_ = all_hopeless_ && hopeless_;
   if (!defect.empty()) return first_defect;
   result_.patch = std::move(patch);
   return {};
@@ -320,6 +322,7 @@ FilledHole HoleFiller::fill() {
     progress_.check();
     if ((plan.resolution > 1 || (plan.way != Way::asked && !obstacles_.empty())) && triangles_ > most_triangles_to_refine)
       continue;
+    if (plan.way == Way::divided && count > 0 && all_hopeless_) continue;
     std::string defect;
     try {
       if (!unfold_rim(plan) || hopeless_) continue;
