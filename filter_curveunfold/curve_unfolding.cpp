@@ -142,23 +142,27 @@ std::vector<Corners> Run::patches_but(std::size_t hole) const {
   return triangles;
 }
 
-// Each patch is clean by itself; where two of them meet, the later one is tried again with the others as obstacles, and if
-// that is no help both as membranes, which bulge least. One of them is left open when they meet even then.
+// Each patch is clean by itself; where two of them meet, the later one is made again with the others as obstacles, and if
+// that is no help both as membranes, which bulge least. Only then the later one is tried in every way there is, and left open
+// when it meets the other even so.
 void Run::separate(const Progress& progress) {
   CurveUnfoldingOptions soft = context_.options;
   soft.energy = SurfaceEnergy::membrane;
-  const HoleFillerContext soft_context{mesh_, context_.topology, neighbourhood_, soft};
+  HoleFillerContext soft_context{mesh_, context_.topology, neighbourhood_, soft, false};
+  HoleFillerContext quick_context = context_;
+  quick_context.thorough = false;
+  const auto fill = [&](std::size_t hole, const HoleFillerContext& context) {
+    filled_[hole] = fill_hole(context, loops_[hole], patches_but(hole), progress);
+    return !filled_[hole].patch.empty();
+  };
   for (const auto& [first, second] : conflicts()) {
     if (filled_[first].patch.empty() || filled_[second].patch.empty()) continue;
-    FilledHole kept = filled_[first];
-    filled_[second] = fill_hole(context_, loops_[second], patches_but(second), progress);
-    if (filled_[second].patch.empty()) {
-      filled_[first].patch = Patch();
-      filled_[first] = fill_hole(soft_context, loops_[first], patches_but(first), progress);
-      if (!filled_[first].patch.empty()) filled_[second] = fill_hole(soft_context, loops_[second], patches_but(second), progress);
-      if (filled_[second].patch.empty()) {
+    if (!fill(second, quick_context)) {
+      FilledHole kept = std::move(filled_[first]);
+      filled_[first] = FilledHole();
+      if (!fill(first, soft_context) || !fill(second, soft_context)) {
         filled_[first] = std::move(kept);
-        filled_[second].reason = "the patch meets the patch of another hole";
+        if (!fill(second, context_)) filled_[second].reason = "the patch meets the patch of another hole";
       }
     }
     record(first);

@@ -320,6 +320,7 @@ FilledHole HoleFiller::fill() {
   int count = 0;
   for (const Try& plan : tries(context_.options, pinched_)) {
     progress_.check();
+    if (plan.way != Way::asked && !context_.thorough) continue;
     if ((plan.resolution > 1 || (plan.way != Way::asked && !obstacles_.empty())) && triangles_ > most_triangles_to_refine)
       continue;
     if (plan.way == Way::divided && count > 0 && all_hopeless_) continue;

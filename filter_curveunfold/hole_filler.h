@@ -31,6 +31,7 @@ struct HoleFillerContext {
   const MeshTopology& topology;
   const InputNeighbourhood& neighbourhood;
   const CurveUnfoldingOptions& options;
+  bool thorough = true;  ///< false: only the unfolding that is asked for is tried
 };
 
 /// Fills one hole. `obstacles` are triangles beyond the input that the patch must not meet either (patches of other
