@@ -9,6 +9,7 @@
 //                              fitted plane shows simple; it begins in the ball; the first seed from SEED on
 //                              that gives one
 //   overlapping=...            the same, with a rim that no projection shows simple
+//   path=...                   the same, with any rim
 //   subdivide                  every face split into four
 #include <cstdio>
 #include <exception>
@@ -42,12 +43,12 @@ TriangleMesh cut(const TriangleMesh& mesh, const std::string& what) {
   std::optional<CutMesh> result;
   if (kind == "round" && n.size() == 4) {
     result = cut_round_hole(mesh, {Vector3(n[0], n[1], n[2]), n[3]});
-  } else if ((kind == "winding" || kind == "overlapping") &&
+  } else if ((kind == "winding" || kind == "overlapping" || kind == "path") &&
              (n.size() == 1 || n.size() == 2 || n.size() == 6 || n.size() == 7)) {
+    const Rim rim = kind == "path" ? Rim::any : kind == "winding" ? Rim::strongly_curved : Rim::overlapping;
     const std::uint32_t seed = n.size() > 1 ? static_cast<std::uint32_t>(n[1]) : 1;
     const Region region = n.size() > 2 ? Region{Vector3(n[2], n[3], n[4]), n[5]} : Region();
-    result = cut_winding_hole(mesh, static_cast<std::size_t>(n[0]),
-                              kind == "winding" ? Rim::strongly_curved : Rim::overlapping, seed, region,
+    result = cut_winding_hole(mesh, static_cast<std::size_t>(n[0]), rim, seed, region,
                               n.size() > 6 ? static_cast<int>(n[6]) : 1);
   } else {
     throw std::runtime_error("not a cut: " + what);
