@@ -3,14 +3,13 @@
 //   cut_holes IN OUT.ply CUT...
 //
 // A CUT is one of
-//   round=X,Y,Z,R              the faces in a ball
-//   winding=SIZE[,SEED[,X,Y,Z,R[,RINGS]]]  a path that winds over the surface, with a rim of SIZE vertices
-//   that no
-//                              fitted plane shows simple; it begins in the ball; the first seed from SEED on
-//                              that gives one
-//   overlapping=...            the same, with a rim that no projection shows simple
-//   path=...                   the same, with any rim
-//   subdivide                  every face split into four
+//   round=X,Y,Z,R      the faces in a ball
+//   path=WHERE         the faces round a path that winds over the surface
+//   winding=WHERE      the same, with a rim that no fitted plane shows simple
+//   overlapping=WHERE  the same, with a rim that no projection shows simple
+//   subdivide          every face split into four
+// WHERE: SIZE[,SEED[,X,Y,Z,R[,RINGS]]], for a rim of SIZE vertices; the first seed from SEED on that gives
+// one; begun in a ball; RINGS of faces on each side of the path.
 #include <cstdio>
 #include <exception>
 #include <sstream>
