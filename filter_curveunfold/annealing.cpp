@@ -22,6 +22,10 @@ constexpr std::size_t steps_per_level = 60;
 /// successes.
 constexpr std::size_t steps_per_projection = 2;
 
+/// The same for the projections in many other directions, which take as much time as that many steps.
+constexpr std::size_t steps_per_wide_projection = 64;
+constexpr int wide_directions = 48;
+
 /// A run ends at this share of the start temperature: nothing is accepted any more that does not lower the
 /// energy.
 constexpr double end_temperature_share = 1e-3;
@@ -77,8 +81,6 @@ Room room_of(const Loop& loop, const LoopTree& tree, double distance_bound) {
   return room;
 }
 
-std::optional<Polygon> flattened(const Loop& loop) { return simple_projection(loop, 0); }
-
 /// One run. Returns the polygon when it succeeded.
 std::optional<Polygon> run(const Loop& start, const UnfoldOptions& options, Random& random,
                            std::size_t& steps, const Progress& progress, const AnnealingObserver& observer) {
@@ -119,7 +121,8 @@ std::optional<Polygon> run(const Loop& start, const UnfoldOptions& options, Rand
       widest.distance = std::max(widest.distance, room.distance);
       widest.folding = std::max(widest.folding, room.folding);
       if (++accepted % steps_per_projection != 0) continue;
-      if (std::optional<Polygon> polygon = flattened(loop)) return polygon;
+      const bool wide = accepted % steps_per_wide_projection == 0;
+      if (std::optional<Polygon> polygon = simple_projection(loop, wide ? wide_directions : 0)) return polygon;
     }
     progress.check();
   }
@@ -151,7 +154,7 @@ AnnealingResult anneal(const Loop& loop, const UnfoldOptions& options, const Pro
   while (result.runs < options.restarts && !result.polygon) {
     progress.update(static_cast<double>(result.runs) / options.restarts);
     ++result.runs;
-    result.polygon = flattened(loop);  // what is simple already needs no step
+    result.polygon = simple_projection(loop, 0);  // what is simple already needs no step
     if (!result.polygon) result.polygon = run(loop, options, random, result.steps, progress, observer);
   }
   return result;

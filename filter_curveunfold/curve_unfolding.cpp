@@ -13,9 +13,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <mutex>
-#include <cmath>
+#include <utility>
 
 namespace meshcomplete {
 namespace {
@@ -71,6 +72,7 @@ class Run {
 
  private:
   std::vector<std::pair<std::size_t, std::size_t>> conflicts() const;
+  std::vector<Corners> patch_corners(std::size_t hole) const;
   std::vector<Corners> patches_but(std::size_t hole) const;
   void record(std::size_t hole);
 
@@ -96,8 +98,10 @@ void Run::record(std::size_t hole) {
 void Run::fill_all(const Progress& progress) {
   double total = 0;
   for (std::size_t hole : todo_) total += static_cast<double>(loops_[hole].vertices.size());
-  // No exception may reach TBB: it would cut short the loops that other threads run inside this one, which then return as
-  // if they were done.
+  // No exception may reach TBB: it would cut short the loops that other threads run inside this one, which then return
+  // as if they were done.
+  // What is done moves on by whole holes; steps within one are only asked whether to stop.
+  const Progress within = progress.part(0, 0, "closing holes");
   std::mutex mutex;
   std::exception_ptr error;
   std::atomic<bool> failed{false};
@@ -105,7 +109,7 @@ void Run::fill_all(const Progress& progress) {
     if (failed) return;
     const std::size_t hole = todo_[i];
     try {
-      filled_[hole] = fill_hole(context_, loops_[hole], {}, progress);
+      filled_[hole] = fill_hole(context_, loops_[hole], {}, within);
       progress.advance(static_cast<double>(loops_[hole].vertices.size()) / total);
     } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex);
@@ -134,37 +138,50 @@ std::vector<std::pair<std::size_t, std::size_t>> Run::conflicts() const {
   return pairs;
 }
 
-std::vector<Corners> Run::patches_but(std::size_t hole) const {
+std::vector<Corners> Run::patch_corners(std::size_t hole) const {
   std::vector<Corners> triangles;
-  for (std::size_t other = 0; other < filled_.size(); ++other)
-    if (other != hole)
-      for (const Triangle& t : filled_[other].patch.triangles) triangles.push_back(corners(mesh_, filled_[other].patch, t));
+  for (const Triangle& t : filled_[hole].patch.triangles)
+    triangles.push_back(corners(mesh_, filled_[hole].patch, t));
   return triangles;
 }
 
-// Each patch is clean by itself; where two of them meet, the later one is made again with the others as obstacles, and if
-// that is no help both as membranes, which bulge least. Only then the later one is tried in every way there is, and left open
-// when it meets the other even so.
+std::vector<Corners> Run::patches_but(std::size_t hole) const {
+  std::vector<Corners> triangles;
+  for (std::size_t other = 0; other < filled_.size(); ++other) {
+    if (other == hole) continue;
+    const std::vector<Corners> more = patch_corners(other);
+    triangles.insert(triangles.end(), more.begin(), more.end());
+  }
+  return triangles;
+}
+
+// Each patch is clean by itself; where two of them meet, the later one is made again with the others as obstacles, and
+// if that is no help both as membranes, which bulge least. Only then the later one is tried in every way there is, and
+// left open when it meets the other even so.
 void Run::separate(const Progress& progress) {
+  const Progress within = progress.part(0, 0, "comparing the patches");
   CurveUnfoldingOptions soft = context_.options;
   soft.energy = SurfaceEnergy::membrane;
-  HoleFillerContext soft_context{mesh_, context_.topology, neighbourhood_, soft, false};
+  const HoleFillerContext soft_context{mesh_, context_.topology, neighbourhood_, soft, false};
   HoleFillerContext quick_context = context_;
   quick_context.thorough = false;
+  const bool softer = context_.options.energy != soft.energy;
   const auto fill = [&](std::size_t hole, const HoleFillerContext& context) {
-    filled_[hole] = fill_hole(context, loops_[hole], patches_but(hole), progress);
+    filled_[hole] = fill_hole(context, loops_[hole], patches_but(hole), within);
     return !filled_[hole].patch.empty();
   };
+  const auto both_soft = [&](std::size_t first, std::size_t second) {
+    FilledHole kept = std::move(filled_[first]);
+    filled_[first] = FilledHole();
+    if (fill(first, soft_context) && fill(second, soft_context)) return true;
+    filled_[first] = std::move(kept);
+    return false;
+  };
   for (const auto& [first, second] : conflicts()) {
-    if (filled_[first].patch.empty() || filled_[second].patch.empty()) continue;
-    if (!fill(second, quick_context)) {
-      FilledHole kept = std::move(filled_[first]);
-      filled_[first] = FilledHole();
-      if (!fill(first, soft_context) || !fill(second, soft_context)) {
-        filled_[first] = std::move(kept);
-        if (!fill(second, context_)) filled_[second].reason = "the patch meets the patch of another hole";
-      }
-    }
+    // Mended while another pair was?
+    if (improper_pairs_between(patch_corners(first), patch_corners(second)).empty()) continue;
+    if (!fill(second, quick_context) && !(softer && both_soft(first, second)) && !fill(second, context_))
+      filled_[second].reason = "the patch meets the patch of another hole";
     record(first);
     record(second);
   }

@@ -19,22 +19,16 @@ constexpr int rounds_between = 2;
 constexpr double vertices_for_coarse_start = 1000;
 constexpr double coarsening = 2.0;
 
-std::vector<double> target_lengths(const Rim& rim, const EmbeddingOptions& options) {
-  std::vector<double> target = rim.edge_length;
-  if (options.edge_length) std::fill(target.begin(), target.end(), *options.edge_length);
-  for (double& length : target) length /= options.resolution;
-  return target;
-}
-
-// About how many vertices a patch of well-shaped triangles of this size has: two triangles per vertex.
-double expected_vertices(const PatchMesh& patch, const std::vector<double>& target) {
-  double triangles = 0;
-  for (Index t = 0; t < patch.triangle_count(); ++t) {
-    const Triangle& c = patch.triangles()[t];
+// Of well-shaped triangles with the target lengths at their corners.
+double triangles_to_cover(const std::vector<Vector3>& positions, const std::vector<Triangle>& triangles,
+                          const std::vector<double>& target) {
+  double count = 0;
+  for (const Triangle& c : triangles) {
+    const Vector3 normal = (positions[c[1]] - positions[c[0]]).cross(positions[c[2]] - positions[c[0]]);
     const double side = (target[c[0]] + target[c[1]] + target[c[2]]) / 3;
-    triangles += 0.5 * patch.area_normal(t).norm() / (0.25 * std::sqrt(3.0) * side * side);
+    count += 0.5 * normal.norm() / (0.25 * std::sqrt(3.0) * side * side);
   }
-  return 0.5 * triangles;
+  return count;
 }
 
 // The patch's triangles, followed by the ring's when the energy looks across the rim.
@@ -63,16 +57,28 @@ void solve(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeig
 
 }  // namespace
 
+std::vector<double> target_lengths(const Rim& rim, const EmbeddingOptions& options) {
+  std::vector<double> target = rim.edge_length;
+  if (options.edge_length) std::fill(target.begin(), target.end(), *options.edge_length);
+  for (double& length : target) length /= options.resolution;
+  return target;
+}
+
+double expected_triangles(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options) {
+  return triangles_to_cover(rim.positions, flat, target_lengths(rim, options));
+}
+
 PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options,
-                    const Progress& progress) {
+                const Progress& progress) {
   PatchMesh patch(rim.positions, rim.positions.size(), flat);
   std::vector<double> target = target_lengths(rim, options);
   RemeshOptions remeshing;
   remeshing.forbidden = rim.forbidden;
   remeshing.rounds = rounds_between;
   // A patch that would be too large is refined at once, and refused.
-  const double expected = expected_vertices(patch, target);
-  const bool coarse = expected > vertices_for_coarse_start && expected < static_cast<double>(remeshing.max_vertices);
+  const double expected = 0.5 * triangles_to_cover(patch.positions(), flat, target);  // two triangles per vertex
+  const bool coarse =
+      expected > vertices_for_coarse_start && expected < static_cast<double>(remeshing.max_vertices);
   if (coarse)
     for (double& length : target) length *= coarsening;
   refine(patch, target, remeshing, progress);

@@ -13,7 +13,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
+#include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -47,18 +47,24 @@ constexpr std::array<MendingStep, 12> mending_steps = {{{Mending::retriangulate,
                                                         {Mending::retriangulate, 2}}};
 constexpr int relaxation_sweeps = 10;
 constexpr int untangling_rounds = 3;
-// Patches with more tangled triangles are not worth it. The bounds are per patch, but for the last one, which is for all
-// tries with one flat triangulation together.
+// Patches with more tangled triangles are not worth it. The bounds are per patch, but for that of untanglings, which is
+// for all tries with one flat triangulation together.
 constexpr std::size_t most_to_mend = 300;
 constexpr std::size_t most_to_untangle = 60;
 constexpr int most_untanglings = 3;
+constexpr int most_passes = 3;  // over all steps
 
-// With more tangled triangles than this another energy or resolution is no help: only another triangulation may be.
+// With more tangled triangles than this another energy or resolution is no help: only another triangulation may be. Of a
+// patch that will have many triangles a coarse one is made first, with enough of them to follow its rim, and tells how
+// many there will be: patches meet along curves, so that their number grows with the square root of all.
 constexpr std::size_t most_to_try_again = 1000;
+constexpr double triangles_to_probe = 20000;
+constexpr double triangles_of_probe = 10000;
+constexpr double probe_triangles_per_edge = 4;
 
-// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape. Nor
-// with another unfolding when the patches of other holes are in its way: they are there whatever the unfolding.
-constexpr std::size_t most_triangles_to_refine = 5000;
+// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape.
+// Nor with another unfolding when the patches of other holes are in its way: they are there whatever the unfolding.
+constexpr std::size_t large_patch = 5000;
 
 // Ways to the plane, each with another triangulation: what is asked for; descended even where a shorter way was found, so
 // that the rim develops as a whole; opened further towards a convex polygon; and divided by a chord into rims that are
@@ -95,13 +101,15 @@ std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   const std::vector<double> heights = pinched ? std::vector<double>{0.2, -0.2, 0.07, -0.07} : std::vector<double>{0.0};
   for (Way way : {Way::asked, Way::descended, Way::stretched}) {
     if (way == Way::descended && options.unfolding.method != UnfoldMethod::automatic) continue;
+    // Annealing again would take as long as the first time, to end in much the same polygon.
+    if (way == Way::stretched && options.unfolding.method == UnfoldMethod::annealing) continue;
     for (double height : heights) {
       for (SurfaceEnergy energy : energies(options.energy)) list.push_back({way, energy, 1.0, height});
       if (way == Way::asked && height == heights.front()) list.push_back({way, options.energy, 2.0, height});
     }
   }
   for (std::size_t chord = 0; chord < most_chords; ++chord)
-    for (SurfaceEnergy energy : {SurfaceEnergy::thin_plate, SurfaceEnergy::membrane})
+    for (SurfaceEnergy energy : energies(options.energy))
       list.push_back({Way::divided, energy, 1.0, heights.front(), chord});
   return list;
 }
@@ -144,7 +152,11 @@ class HoleFiller {
 
  private:
   bool unfold_rim(const Try& plan);
+  bool divide_rim(std::size_t chord);
+  Vector3 flap_corner(Index corner) const;
   std::string attempt(const Try& plan);
+  PatchMesh embed_flat(const Try& plan, const EmbeddingOptions& options);
+  std::string probe(const Try& plan, EmbeddingOptions options);
   bool mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step);
   std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
   Patch as_patch(const PatchMesh& embedded) const;
@@ -160,29 +172,30 @@ class HoleFiller {
   Unfolding unfolding_;
   std::optional<std::tuple<Way, double, std::size_t>> unfolded_;  // way, flap height, chord: what is at hand
   std::vector<Chord> chords_;
+  DividedRim divided_;
+  std::vector<std::array<Vector3, 3>> in_the_way_;  // the obstacles, and the flaps
   FilledHole result_;
   bool mended_ = false;
   int untanglings_ = 0;
-  bool hopeless_ = false;     // with the flat triangulation at hand
-  bool all_hopeless_ = true;  // with all of them
-  std::size_t triangles_ = 0;  // of the last embedded patch
+  bool hopeless_ = false;  // with the flat triangulation at hand
+  std::size_t triangles_ = 0;  // of the last patch that was embedded at the resolution asked for
+  std::vector<double> wanted_;  // edge lengths, per vertex of the rim
 };
 
 // Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is none yet.
 bool HoleFiller::unfold_rim(const Try& plan) {
   const std::tuple wanted(plan.way, plan.flap_height, plan.chord);
   const bool divided = plan.way == Way::divided;
-  if (unfolded_ == wanted) return divided ? plan.chord < chords_.size() : !result_.flat.empty();
+  if (unfolded_ == wanted) return !result_.flat.empty();
   unfolded_ = wanted;
   untanglings_ = 0;
   hopeless_ = false;
   opened_ = open_pinches(rim_, plan.flap_height);
-  if (divided) {
-    if (plan.chord == 0 && unfolding_.outcome != UnfoldOutcome::knotted)
-      chords_ = chords(opened_.rim, context_.neighbourhood, most_chords);
-    return plan.chord < chords_.size();
-  }
+  in_the_way_ = obstacles_;
+  for (const Triangle& t : opened_.flaps) in_the_way_.push_back({flap_corner(t[0]), flap_corner(t[1]), flap_corner(t[2])});
+  result_.polygon.clear();
   result_.flat.clear();
+  if (divided) return divide_rim(plan.chord);
   UnfoldOptions options = context_.options.unfolding;
   options.stretch = plan.way == Way::stretched;
   if (plan.way == Way::descended) options.method = UnfoldMethod::descent;
@@ -205,6 +218,35 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   return true;
 }
 
+// Divides the rim by one of the best chords, and lays its sides out one beside the other, as long as they are in space.
+bool HoleFiller::divide_rim(std::size_t chord) {
+  if (unfolding_.outcome == UnfoldOutcome::knotted) return false;
+  const auto start = Clock::now();
+  if (chord == 0) chords_ = chords(opened_.rim, context_.neighbourhood, most_chords, progress_);
+  if (chord >= chords_.size()) return false;
+  divided_ = divide(opened_.rim, chords_[chord], context_.neighbourhood, context_.options.edge_length, divisions, progress_);
+  result_.times.steps += divided_.steps;
+  double left = 0;
+  for (const FlatSide& side : divided_.sides) {
+    const double scale = length(side.rim.positions) / length(side.polygon);
+    Eigen::AlignedBox2d box;
+    for (const Eigen::Vector2d& p : side.polygon) box.extend(scale * p);
+    const Index first = static_cast<Index>(result_.polygon.size());
+    for (const Eigen::Vector2d& p : side.polygon)
+      result_.polygon.push_back(scale * p + Eigen::Vector2d(left - box.min().x(), -box.min().y()));
+    for (const Triangle& t : side.flat) result_.flat.push_back({t[0] + first, t[1] + first, t[2] + first});
+    left += 1.1 * box.sizes().x();
+  }
+  result_.times.unfolding += seconds_since(start);
+  return true;
+}
+
+// A corner of a flap, as `opened_` numbers it.
+Vector3 HoleFiller::flap_corner(Index corner) const {
+  const Index n = static_cast<Index>(loop_.vertices.size());
+  return corner < n ? context_.mesh.vertices[loop_.vertices[corner]] : opened_.corners[corner - n];
+}
+
 Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
   Patch patch;
   patch.input_vertices = static_cast<Index>(context_.mesh.vertices.size());
@@ -225,22 +267,63 @@ Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
   return patch;
 }
 
-// Checks the patch. When triangles meet what they must not, returns them; `defect` is empty when all is well.
+// What another triangulation of a spot may mend; anything else is wrong with the whole patch.
+bool can_be_mended(PatchDefect defect) {
+  switch (defect) {
+    case PatchDefect::edge_not_manifold:
+    case PatchDefect::vertex_not_manifold:
+    case PatchDefect::degenerate_face:
+    case PatchDefect::coincident_vertices:
+    case PatchDefect::meets_itself:
+    case PatchDefect::meets_input: return true;
+    default: return false;
+  }
+}
+
+// Checks the patch. When triangles meet what they must not, returns them, but none of the flaps, which follow the embedded
+// triangles and stay as they are. `defect` is empty when all is well.
 std::vector<Index> HoleFiller::tangled_triangles(const Patch& patch, std::string& defect) {
   const auto start = Clock::now();
   PatchCheck check = check_patch(context_.neighbourhood, patch, {&loop_}, progress_);
   defect = check.passed() ? std::string() : describe(check.defect);
+  if (!check.passed() && !can_be_mended(check.defect)) check.patch_triangles.clear();
   if (defect.empty() && !obstacles_.empty()) {
     std::vector<std::array<Vector3, 3>> triangles;
     for (const Triangle& t : patch.triangles) triangles.push_back(corners(context_.mesh, patch, t));
     for (const auto& pair : improper_pairs_between(triangles, obstacles_)) check.patch_triangles.push_back(pair.first);
     if (!check.patch_triangles.empty()) defect = "the patch meets the patch of another hole";
   }
+  const std::size_t embedded = patch.triangles.size() - opened_.flaps.size();
+  auto& tangled = check.patch_triangles;
+  tangled.erase(std::lower_bound(tangled.begin(), tangled.end(), embedded), tangled.end());
   result_.times.checking += seconds_since(start);
-  return std::move(check.patch_triangles);
+  return std::move(tangled);
 }
 
-// Embeds, checks, and relaxes the patch where it is tangled. Returns the defect that is left, or fills `result_.patch`.
+PatchMesh HoleFiller::embed_flat(const Try& plan, const EmbeddingOptions& options) {
+  return plan.way == Way::divided ? embed(opened_.rim, divided_, options, progress_)
+                                  : embed(opened_.rim, result_.flat, options, progress_);
+}
+
+// Finds out from a coarse patch whether a large one is hopeless; returns the defect of the coarse one.
+std::string HoleFiller::probe(const Try& plan, EmbeddingOptions options) {
+  const double expected = plan.way == Way::divided ? expected_triangles(divided_, options)
+                                                   : expected_triangles(opened_.rim, result_.flat, options);
+  const double edges = static_cast<double>(loop_.vertices.size());
+  const double wanted = std::max(triangles_of_probe, probe_triangles_per_edge * edges);
+  if (expected < triangles_to_probe || expected < 2 * wanted) return {};
+  const auto start = Clock::now();
+  options.resolution *= std::sqrt(wanted / expected);
+  const PatchMesh coarse = embed_flat(plan, options);
+  result_.times.embedding += seconds_since(start);
+  std::string defect;
+  const double tangled = static_cast<double>(tangled_triangles(as_patch(coarse), defect).size());
+  const double share = expected / static_cast<double>(coarse.triangle_count());
+  hopeless_ = !defect.empty() && tangled * std::sqrt(share) > most_to_try_again;
+  return defect;
+}
+
+// Embeds, checks, and mends the patch where it is tangled. Returns the defect that is left, or fills `result_.patch`.
 std::string HoleFiller::attempt(const Try& plan) {
   auto start = Clock::now();
   EmbeddingOptions options;
@@ -248,23 +331,21 @@ std::string HoleFiller::attempt(const Try& plan) {
   options.weights = context_.options.weights;
   options.edge_length = context_.options.edge_length;
   options.resolution = plan.resolution;
+  wanted_ = target_lengths(opened_.rim, options);
   mended_ = false;
-  PatchMesh embedded = plan.way == Way::divided
-                           ? embed_divided(opened_.rim, chords_[plan.chord], context_.neighbourhood,
-                                           context_.options.unfolding, options, divisions, progress_)
-                           : embed(opened_.rim, result_.flat, options, progress_);
+  if (std::string defect = probe(plan, options); hopeless_) return defect;
+  PatchMesh embedded = embed_flat(plan, options);
   result_.times.embedding += seconds_since(start);
-  triangles_ = embedded.triangle_count();
+  if (plan.resolution <= 1) triangles_ = embedded.triangle_count();
   std::string defect;
   Patch patch = as_patch(embedded);
   std::vector<Index> tangled = tangled_triangles(patch, defect);
   const std::string first_defect = defect;
-  for (std::size_t before = tangled.size() + 1; !defect.empty() && tangled.size() < before;) {
+  std::size_t before = tangled.size() + 1;
+  for (int pass = 0; pass < most_passes && !defect.empty() && tangled.size() < before; ++pass) {
     before = tangled.size();
     for (const MendingStep& step : mending_steps) {
-      // The flaps follow the embedded triangles; they stay as they are, and what meets them moves.
-      tangled.erase(std::lower_bound(tangled.begin(), tangled.end(), embedded.triangle_count()), tangled.end());
-      if (defect.empty() || tangled.empty() || tangled.size() > most_to_mend) break;
+      if (tangled.empty() || tangled.size() > most_to_mend) break;
       start = Clock::now();
       const bool changed = mend(embedded, tangled, step);
       result_.times.embedding += seconds_since(start);
@@ -275,23 +356,25 @@ std::string HoleFiller::attempt(const Try& plan) {
     }
   }
   hopeless_ = tangled.size() > most_to_try_again;
-  all_hopeless_ = all_hopeless_ && hopeless_;
   if (!defect.empty()) return first_defect;
   result_.patch = std::move(patch);
   return {};
 }
 
+// Whether the step changed the patch.
 bool HoleFiller::mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step) {
   switch (step.mending) {
     case Mending::retriangulate:
-      return retriangulate(embedded, tangled, opened_.rim, context_.neighbourhood, obstacles_, step.rings, progress_) > 0;
+      return retriangulate(embedded, tangled, opened_.rim, wanted_, context_.neighbourhood, in_the_way_, step.rings,
+                           progress_) > 0;
     case Mending::relax:
       relax_around(embedded, tangled, step.rings, relaxation_sweeps);
       return true;
     case Mending::untangle:
       if (tangled.size() > most_to_untangle || ++untanglings_ > most_untanglings) return false;
-      return untangle(embedded, tangled, context_.neighbourhood, obstacles_, opened_.rim.forbidden, step.rings,
-                      untangling_rounds, progress_) > 0;
+      untangle(embedded, tangled, context_.neighbourhood, in_the_way_, opened_.rim.forbidden, step.rings,
+               untangling_rounds, progress_);
+      return true;
   }
   return false;
 }
@@ -321,9 +404,8 @@ FilledHole HoleFiller::fill() {
   for (const Try& plan : tries(context_.options, pinched_)) {
     progress_.check();
     if (plan.way != Way::asked && !context_.thorough) continue;
-    if ((plan.resolution > 1 || (plan.way != Way::asked && !obstacles_.empty())) && triangles_ > most_triangles_to_refine)
-      continue;
-    if (plan.way == Way::divided && count > 0 && all_hopeless_) continue;
+    const bool costly = plan.resolution > 1 || (plan.way != Way::asked && !obstacles_.empty());
+    if (costly && triangles_ > large_patch) continue;
     std::string defect;
     try {
       if (!unfold_rim(plan) || hopeless_) continue;

@@ -35,7 +35,7 @@ struct HoleFillerContext {
 };
 
 /// Fills one hole. `obstacles` are triangles beyond the input that the patch must not meet either (patches of other
-/// holes). Thread-safe. Throws `Cancelled`; everything else ends up in `reason`.
+/// holes). Thread-safe. Throws `Cancelled`; every CompletionError ends up in `reason`.
 FilledHole fill_hole(const HoleFillerContext& context, const BoundaryLoop& loop,
                      const std::vector<std::array<Vector3, 3>>& obstacles, const Progress& progress = Progress());
 

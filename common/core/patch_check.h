@@ -43,8 +43,8 @@ enum class PatchDefect {
 std::string describe(PatchDefect defect);
 
 /// The first defect found, with the patch triangles that have it (for degenerate faces, coincident vertices
-/// and intersections all of them, with itself and with the input, so that a caller can mend them) and the input
-/// triangles concerned: those that are met, and those at an edge or a position that the patch wants too. Both lists are ascending.
+/// and intersections all of them, so that a caller can mend them; of a patch that meets itself also those that meet
+/// the input) and the input triangles concerned: those that are met, and those at an edge or a position that the patch wants too. Both lists are ascending.
 struct PatchCheck {
   PatchDefect defect = PatchDefect::none;
   std::vector<Index> patch_triangles;

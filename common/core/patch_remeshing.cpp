@@ -256,6 +256,13 @@ void Remesher::compact() {
 
 }  // namespace
 
+bool can_flip(const PatchMesh& patch, Index h, const ForbiddenEdges& forbidden) {
+  if (patch.is_boundary(h)) return false;
+  const Index c = patch.apex(h), d = patch.apex(patch.opposite(h));
+  const std::pair<Index, Index> pair(std::min(c, d), std::max(c, d));
+  return c != d && !patch.joined(c, d) && !std::binary_search(forbidden.begin(), forbidden.end(), pair);
+}
+
 void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options, const Progress& progress) {
   Remesher remesher(patch, target, options);
   remesher.flip_all();

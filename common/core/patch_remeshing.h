@@ -14,6 +14,10 @@ namespace meshcomplete {
 /// Sorted pairs (smaller first) of rim vertices.
 using ForbiddenEdges = std::vector<std::pair<Index, Index>>;
 
+/// Whether an inner edge may be replaced by the other diagonal of its two triangles: that is no edge yet, and not
+/// forbidden.
+bool can_flip(const PatchMesh& patch, Index half_edge, const ForbiddenEdges& forbidden);
+
 struct RemeshOptions {
   ForbiddenEdges forbidden;
   int rounds = 3;               ///< of split, collapse, flip and smooth, 0 to 100

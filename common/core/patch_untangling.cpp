@@ -2,7 +2,6 @@
 
 #include "common/core/patch.h"
 #include "common/core/patch_surroundings.h"
-#include "common/core/triangle_intersection.h"
 
 #include <algorithm>
 
@@ -44,7 +43,6 @@ class Untangler {
  private:
   double mean_edge(Index vertex) const;
   std::vector<Vector3> places(Index vertex, double edge) const;
-  bool can_flip(Index half_edge) const;
 
   PatchMesh& patch_;
   const ForbiddenEdges& forbidden_;
@@ -138,17 +136,10 @@ bool Untangler::improve(Index vertex) {
   return best != start;
 }
 
-bool Untangler::can_flip(Index h) const {
-  if (patch_.is_boundary(h)) return false;
-  const Index c = patch_.apex(h), d = patch_.apex(patch_.opposite(h));
-  const std::pair<Index, Index> pair(std::min(c, d), std::max(c, d));
-  return c != d && !patch_.joined(c, d) && !std::binary_search(forbidden_.begin(), forbidden_.end(), pair);
-}
-
 // Flips an edge of the triangle when that makes it and its neighbour meet fewer triangles.
 bool Untangler::improve_by_flips(Index triangle) {
   for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h) {
-    if (!can_flip(h)) continue;
+    if (!can_flip(patch_, h, forbidden_)) continue;
     star_ = {triangle, patch_.opposite(h) / 3};
     surroundings_.collect_round(star_, 0.0);
     const std::size_t before = surroundings_.met_by_star(star_);

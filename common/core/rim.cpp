@@ -1,5 +1,6 @@
 #include "common/core/rim.h"
 
+#include "common/core/triangle_blocks.h"
 #include "common/core/triangle_intersection.h"
 
 #include <algorithm>
@@ -47,22 +48,27 @@ void smooth_cyclic(std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<Index> obstructed_edges(const InputNeighbourhood& input, const BoundaryLoop& loop) {
+bool is_obstructed(const InputNeighbourhood& input, const Vector3& a, const Vector3& b) {
   const TriangleMesh& mesh = input.mesh();
+  const Box segment = bounding_box(a, b, b);
+  bool obstructed = false;
+  input.blocks().visit(segment, [&](Index triangle) {
+    const Triangle& t = mesh.triangles[triangle];
+    const std::array<Vector3, 3> corners = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    for (const Vector3& corner : corners)
+      if (corner == a || corner == b) return true;
+    obstructed = !collinear(corners[0], corners[1], corners[2]) && segment_meets_triangle(a, b, corners);
+    return !obstructed;
+  });
+  return obstructed;
+}
+
+std::vector<Index> obstructed_edges(const InputNeighbourhood& input, const BoundaryLoop& loop) {
+  const std::vector<Vector3>& vertices = input.mesh().vertices;
   std::vector<Index> edges;
-  for (Index i = 0; i < loop.vertices.size(); ++i) {
-    const Vector3& a = mesh.vertices[loop.vertices[i]];
-    const Vector3& b = mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]];
-    const auto passes = [&](Index triangle) {
-      const Triangle& t = mesh.triangles[triangle];
-      const std::array<Vector3, 3> corners = {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-      for (const Vector3& corner : corners)
-        if (corner == a || corner == b) return false;
-      return !collinear(corners[0], corners[1], corners[2]) && segment_meets_triangle(a, b, corners);
-    };
-    const std::vector<Index> near = input.triangles_in_box(a.cwiseMin(b), a.cwiseMax(b));
-    if (std::any_of(near.begin(), near.end(), passes)) edges.push_back(i);
-  }
+  for (Index i = 0; i < loop.vertices.size(); ++i)
+    if (is_obstructed(input, vertices[loop.vertices[i]], vertices[loop.vertices[(i + 1) % loop.vertices.size()]]))
+      edges.push_back(i);
   return edges;
 }
 

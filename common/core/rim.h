@@ -23,6 +23,10 @@ struct Rim {
 /// Cost: O(faces of the ring).
 Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop);
 
+/// Whether the input comes between two of its vertices: a triangle without a corner at either end meets the segment. Exact.
+/// Cost: O(log faces + triangles whose box meets that of the segment), until the first one is found.
+bool is_obstructed(const InputNeighbourhood& input, const Vector3& a, const Vector3& b);
+
 /// The edges of the rim (positions of their first vertices in the loop) through which the input itself passes: triangles
 /// without a corner at the edge meet it. No patch can close such an edge without meeting those triangles. Exact.
 /// Cost: O(edges times (log faces + triangles nearby)).

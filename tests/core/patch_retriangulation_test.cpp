@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -22,7 +24,7 @@ class PatchRetriangulation : public test::BoxWithLid {
   PatchRetriangulation() : rim_(collect_rim(mesh_, build_topology(mesh_), loops_.at(0))) {}
 
   std::size_t mend(const std::vector<Index>& tangled, int rings, const std::vector<Corners>& obstacles = {}) {
-    return retriangulate(patch_, tangled, rim_, input_, obstacles, rings);
+    return retriangulate(patch_, tangled, rim_, rim_.edge_length, input_, obstacles, rings);
   }
 
   void poke_through_the_bottom() {
@@ -107,43 +109,75 @@ TEST_F(PatchRetriangulation, AGapWithoutAFillingIsLeft) {
   EXPECT_EQ(patch_.triangles(), before);
 }
 
-// A tent over a long gap with a bump of the input under its ridge: the filling along the ridge is the only one.
-TEST(PatchRetriangulationOfAQuad, TheDiagonalThatMeetsNothing) {
-  const std::vector<Vector3> positions = {{0, 0, 0}, {4, 0, 1}, {4, 4, 0}, {0, 4, 1}};
+TEST_F(PatchRetriangulation, GapsThatTouchDoNotDisturbEachOther) {
+  // Neighbouring tangles, so that the gaps share corners.
+  for (const Vector3& place : {Vector3(3, 4, 0), Vector3(5, 4, 0)}) {
+    const Index poked = vertex_near(place);
+    patch_.move(poked, patch_.position(poked) - Vector3(0, 0, 0.8));
+  }
+  std::vector<Index> triangles = check().patch_triangles;
+  ASSERT_FALSE(triangles.empty());
+  EXPECT_GE(mend(triangles, 0), 1u);
+  EXPECT_TRUE(check().passed()) << describe(check().defect);
+}
+
+// Nothing is rounded exactly here: every split is a small move.
+TEST_F(PatchRetriangulation, SlantedGapsStayClean) {
+  const Eigen::AngleAxisd turn(0.7, Vector3(1, 2, 3).normalized());
+  for (Vector3& p : mesh_.vertices) p = as_stored(turn * p);
+  for (Vector3& p : rim_.positions) p = as_stored(turn * p);
+  for (Vector3& p : rim_.ring.vertices) p = as_stored(turn * p);
+  std::vector<Vector3> positions;
+  for (const Vector3& p : patch_.positions()) positions.push_back(as_stored(turn * p));
+  PatchMesh slanted(positions, patch_.rim_size(), patch_.triangles());
+  const Index poked = vertex_near(Vector3(4, 4, 0));
+  slanted.move(poked, slanted.position(poked) - turn * Vector3(0, 0, 0.8));
+  std::vector<Index> star;
+  slanted.for_outgoing(poked, [&](Index h) { star.push_back(h / 3); });
   const TriangleMesh nothing;
   const InputNeighbourhood input(nothing);
-  Rim rim;
-  rim.positions = positions;
-  // Across the segment from corner 0 to corner 2, and below the one from 1 to 3.
-  const std::vector<Corners> bar = {{Vector3(1, 3, 0.2), Vector3(3, 1, 0.2), Vector3(2.1, 2.1, -0.5)}};
-  PatchMesh patch(positions, 4, {{0, 1, 2}, {0, 2, 3}});
-  ASSERT_EQ(retriangulate(patch, {0}, rim, input, bar, 1), 1u);
-  const auto joins = [&](Index a, Index b) { return patch.joined(a, b); };
-  EXPECT_FALSE(joins(0, 2));
+  ASSERT_EQ(retriangulate(slanted, star, rim_, std::vector<double>(rim_.positions.size(), 0.3), input, {}, 2), 1u);
   std::vector<Corners> triangles;
-  for (const Triangle& t : patch.triangles())
-    triangles.push_back({patch.position(t[0]), patch.position(t[1]), patch.position(t[2])});
-  EXPECT_TRUE(improper_pairs_between(triangles, bar).empty());
+  for (const Triangle& t : slanted.triangles())
+    triangles.push_back({slanted.position(t[0]), slanted.position(t[1]), slanted.position(t[2])});
+  EXPECT_TRUE(improper_pairs(triangles).empty());
+  for (const Corners& c : triangles) EXPECT_FALSE(collinear(c[0], c[1], c[2]));
+}
+
+/// Four corners that are not in one plane, closed along the diagonal from 0 to 2, and a bar across that diagonal and below
+/// the other one.
+class PatchRetriangulationOfAQuad : public ::testing::Test {
+ protected:
+  PatchRetriangulationOfAQuad() { rim_.positions = positions_; }
+  std::size_t mend() { return retriangulate(patch_, {0}, rim_, {1, 1, 1, 1}, InputNeighbourhood(nothing_), bar_, 1); }
+
+  const std::vector<Vector3> positions_ = {{0, 0, 0}, {4, 0, 1}, {4, 4, 0}, {0, 4, 1}};
+  const std::vector<Corners> bar_ = {{Vector3(1, 3, 0.2), Vector3(3, 1, 0.2), Vector3(2.1, 2.1, -0.5)}};
+  const TriangleMesh nothing_;
+  Rim rim_;
+  PatchMesh patch_{positions_, 4, {{0, 1, 2}, {0, 2, 3}}};
+};
+
+TEST_F(PatchRetriangulationOfAQuad, TheDiagonalThatMeetsNothing) {
+  ASSERT_EQ(mend(), 1u);
+  EXPECT_FALSE(patch_.joined(0, 2));
+  std::vector<Corners> triangles;
+  for (const Triangle& t : patch_.triangles())
+    triangles.push_back({patch_.position(t[0]), patch_.position(t[1]), patch_.position(t[2])});
+  EXPECT_TRUE(improper_pairs_between(triangles, bar_).empty());
   EXPECT_TRUE(improper_pairs(triangles).empty());
 }
 
-// The same with the good diagonal forbidden: there is no way.
-TEST(PatchRetriangulationOfAQuad, NoForbiddenEdge) {
-  const std::vector<Vector3> positions = {{0, 0, 0}, {4, 0, 1}, {4, 4, 0}, {0, 4, 1}};
-  const TriangleMesh nothing;
-  const InputNeighbourhood input(nothing);
-  Rim rim;
-  rim.positions = positions;
-  rim.forbidden = {{1, 3}};
-  const std::vector<Corners> bar = {{Vector3(1, 3, 0.2), Vector3(3, 1, 0.2), Vector3(2.1, 2.1, -0.5)}};
-  PatchMesh patch(positions, 4, {{0, 1, 2}, {0, 2, 3}});
-  EXPECT_EQ(retriangulate(patch, {0}, rim, input, bar, 1), 0u);
-  EXPECT_TRUE(patch.joined(0, 2));
+// With the good diagonal forbidden there is no way.
+TEST_F(PatchRetriangulationOfAQuad, NoForbiddenEdge) {
+  rim_.forbidden = {{1, 3}};
+  EXPECT_EQ(mend(), 0u);
+  EXPECT_TRUE(patch_.joined(0, 2));
 }
 
 TEST_F(PatchRetriangulation, CanBeCancelled) {
   poke_through_the_bottom();
-  EXPECT_THROW(retriangulate(patch_, check().patch_triangles, rim_, input_, {}, 1,
+  EXPECT_THROW(retriangulate(patch_, check().patch_triangles, rim_, rim_.edge_length, input_, {}, 1,
                              Progress([](double, const std::string&) { return false; })),
                Cancelled);
 }

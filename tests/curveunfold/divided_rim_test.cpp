@@ -72,7 +72,9 @@ TEST(DividedRim, NoChordThroughAFaceOfTheInput) {
   for (const Vector3& p : {Vector3(-3, 0, -1), Vector3(3, 0, -1), Vector3(0, 0, 4)}) wall.vertices.push_back(middle + p);
   wall.triangles.push_back({v, v + 1, v + 2});
   const InputNeighbourhood input(wall);
-  for (const auto& [i, k] : chords(free.rim, input, 4))
+  const std::vector<Chord> best = chords(free.rim, input, 4);
+  ASSERT_FALSE(best.empty());
+  for (const auto& [i, k] : best)
     EXPECT_FALSE(free.rim.positions[i].y() * free.rim.positions[k].y() < 0) << "crosses the wall y = 0";
 }
 
@@ -83,7 +85,9 @@ TEST(DividedRim, BothPartsAreLongEnough) {
   std::vector<double> way = {0};
   for (std::size_t i = 0; i < n; ++i)
     way.push_back(all += (collar.rim.positions[(i + 1) % n] - collar.rim.positions[i]).norm());
-  for (const auto& [i, k] : chords(collar.rim, collar.input, 10)) {
+  const std::vector<Chord> best = chords(collar.rim, collar.input, 10);
+  ASSERT_FALSE(best.empty());
+  for (const auto& [i, k] : best) {
     EXPECT_GE(way[k] - way[i], 0.2 * all);
     EXPECT_GE(all - (way[k] - way[i]), 0.2 * all);
   }
@@ -94,7 +98,9 @@ TEST(DividedRim, TheSidesFitTogether) {
   const Chord chord = chords(collar.rim, collar.input, 1).at(0);
   EmbeddingOptions options;
   options.energy = SurfaceEnergy::membrane;
-  const PatchMesh patch = embed_divided(collar.rim, chord, collar.input, {}, options, 2);
+  const DividedRim divided = divide(collar.rim, chord, collar.input, {}, 2);
+  EXPECT_EQ(divided.sides.size(), 2u) << "both project as simple polygons";
+  const PatchMesh patch = embed(collar.rim, divided, options);
   EXPECT_EQ(patch.rim_size(), collar.rim.positions.size());
   for (Index v = 0; v < patch.rim_size(); ++v) EXPECT_EQ(patch.position(v), collar.rim.positions[v]);
   // A disk: V - E + F = 1, every rim edge on the boundary, every other edge inside.
@@ -110,7 +116,7 @@ TEST(DividedRim, TheEdgeLengthHoldsForTheChordToo) {
   const Collar collar(dumbbell(80));
   EmbeddingOptions options;
   options.edge_length = 0.05;
-  const PatchMesh patch = embed_divided(collar.rim, {10, 50}, collar.input, {}, options, 0);
+  const PatchMesh patch = embed(collar.rim, divide(collar.rim, {10, 50}, collar.input, 0.05, 0), options);
   const Vector3 &a = collar.rim.positions[10], &b = collar.rim.positions[50];
   std::vector<double> along;
   for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v) {
@@ -122,12 +128,52 @@ TEST(DividedRim, TheEdgeLengthHoldsForTheChordToo) {
   for (std::size_t i = 1; i < along.size(); ++i) EXPECT_NEAR(along[i] - along[i - 1], 0.05, 0.005);
 }
 
+// Two knots, one on each side of the chord.
 TEST(DividedRim, ASideThatDoesNotUnfoldIsAnError) {
-  UnfoldOptions options;
-  options.method = UnfoldMethod::annealing;
-  options.restarts = 1;
-  const Collar collar(testing::torus_knot(60, 2, 3), 1.02);
-  EXPECT_THROW(embed_divided(collar.rim, {0, 3}, collar.input, options, {}, 0), CompletionError);
+  const std::vector<Vector3> loop = testing::connected_sum(testing::torus_knot(60, 2, 3), testing::torus_knot(60, 2, 3));
+  const Collar collar(loop, 1.01);
+  try {
+    divide(collar.rim, {60, static_cast<Index>(loop.size()) - 1}, collar.input, {}, 0);
+    ADD_FAILURE() << "a knot unfolded";
+  } catch (const CompletionError& error) {
+    EXPECT_NE(std::string(error.what()).find("could not be unfolded"), std::string::npos) << error.what();
+  }
+}
+
+TEST(DividedRim, AChordOfTooManyEdgesIsAnError) {
+  const Collar collar(dumbbell(80));
+  EXPECT_THROW(divide(collar.rim, {10, 50}, collar.input, 1e-5, 0), CompletionError);
+}
+
+// Wound five times: what one chord leaves twisted is divided again.
+TEST(DividedRim, SidesAreDividedAgain) {
+  const Collar collar(testing::wound_rim(200, 5), 1.02);
+  const std::vector<Chord> best = chords(collar.rim, collar.input, 1);
+  ASSERT_FALSE(best.empty());
+  const DividedRim divided = divide(collar.rim, best.front(), collar.input, {}, 2);
+  EXPECT_GT(divided.sides.size(), 2u);
+  const std::size_t points = collar.rim.positions.size() + divided.points.size();
+  for (const FlatSide& side : divided.sides) {
+    ASSERT_EQ(side.vertex.size(), side.rim.positions.size());
+    ASSERT_EQ(side.vertex.size(), side.polygon.size());
+    for (std::size_t i = 0; i < side.vertex.size(); ++i) {
+      const Index v = side.vertex[i];
+      ASSERT_LT(v, points);
+      const std::size_t n = collar.rim.positions.size();
+      EXPECT_EQ(side.rim.positions[i], v < n ? collar.rim.positions[v] : divided.points[v - n]);
+    }
+  }
+}
+
+TEST(DividedRim, CanBeCancelled) {
+  const Collar collar(dumbbell(80));
+  const Progress stop([](double, const std::string&) { return false; });
+  EXPECT_THROW(
+      {
+        stop.update(0.5);
+        chords(collar.rim, collar.input, 3, stop);
+      },
+      Cancelled);
 }
 
 }  // namespace

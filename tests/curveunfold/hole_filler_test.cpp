@@ -120,7 +120,11 @@ TEST(HoleFiller, ALongRimWoundRoundACylinderIsDivided) {
     const FilledHole filled = scene.fill(loop);
     EXPECT_EQ(filled.reason, "");
     EXPECT_TRUE(scene.passes(filled.patch, loop));
-    divided |= mentions(filled.route, "divided by a chord");
+    if (!mentions(filled.route, "divided by a chord")) continue;
+    divided = true;
+    // Its sides, one beside the other; the points of the chord belong to both.
+    EXPECT_GT(filled.polygon.size(), rim.size());
+    EXPECT_EQ(filled.flat.size() % 2, filled.polygon.size() % 2);
   }
   EXPECT_TRUE(divided);
 }

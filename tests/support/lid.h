@@ -28,9 +28,8 @@ class BoxWithLid : public ::testing::Test {
     TriangleMesh mesh = grid;
     for (Vector3& p : mesh.vertices) p.z() = -depth;
     const BoundaryLoop rim = loops_of(grid)[0];
-    std::vector<Vector3> low, high;
+    std::vector<Vector3> high;
     for (Index v : rim.vertices) {
-      low.push_back(mesh.vertices[v]);
       high.push_back(grid.vertices[v]);
     }
     // The walls, welded to the bottom.
