@@ -122,7 +122,8 @@ std::optional<Polygon> run(const Loop& start, const UnfoldOptions& options, Rand
       widest.folding = std::max(widest.folding, room.folding);
       if (++accepted % steps_per_projection != 0) continue;
       const bool wide = accepted % steps_per_wide_projection == 0;
-      if (std::optional<Polygon> polygon = simple_projection(loop, wide ? wide_directions : 0)) return polygon;
+      if (std::optional<Polygon> polygon = simple_projection(loop, wide ? wide_directions : 0))
+        return polygon;
     }
     progress.check();
   }

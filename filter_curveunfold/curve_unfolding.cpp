@@ -1,15 +1,8 @@
 #include "filter_curveunfold/curve_unfolding.h"
 
-#include "common/core/error.h"
-#include "common/core/mesh_topology.h"
-#include "common/core/patch_check.h"
-#include "common/core/triangle_intersection.h"
-#include "filter_curveunfold/hole_filler.h"
-
-#include <Eigen/Geometry>
-
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -17,6 +10,12 @@
 #include <exception>
 #include <mutex>
 #include <utility>
+
+#include "common/core/error.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/patch_check.h"
+#include "common/core/triangle_intersection.h"
+#include "filter_curveunfold/hole_filler.h"
 
 namespace meshcomplete {
 namespace {
@@ -27,11 +26,14 @@ void check_options(const CurveUnfoldingOptions& options) {
   constexpr const char* stage = "reading the parameters";
   const UnfoldOptions& u = options.unfolding;
   if (options.edge_length && !(std::isfinite(*options.edge_length) && *options.edge_length > 0))
-    throw CompletionError(stage, "The edge length must be positive, or 0 for that of the mesh round the hole.");
-  if (u.restarts < 1 || u.restarts > 10000) throw CompletionError(stage, "The restarts must lie between 1 and 10000.");
+    throw CompletionError(stage,
+                          "The edge length must be positive, or 0 for that of the mesh round the hole.");
+  if (u.restarts < 1 || u.restarts > 10000)
+    throw CompletionError(stage, "The restarts must lie between 1 and 10000.");
   if (!(u.min_distance >= 1e-9 && u.min_distance <= 1e-2))
     throw CompletionError(stage, "The least distance must lie between 1e-9 and 0.01.");
-  if (!(u.cooling > 0 && u.cooling < 1)) throw CompletionError(stage, "The cooling rate must lie between 0 and 1.");
+  if (!(u.cooling > 0 && u.cooling < 1))
+    throw CompletionError(stage, "The cooling rate must lie between 0 and 1.");
   if (!(std::isfinite(u.start_temperature) && u.start_temperature > 0))
     throw CompletionError(stage, "The start temperature must be positive.");
 }
@@ -56,10 +58,15 @@ class Run {
  public:
   Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
       const CurveUnfoldingOptions& options, CompletionReport& report)
-      : mesh_(mesh), loops_(loops), neighbourhood_(mesh), report_(report), filled_(loops.size()),
+      : mesh_(mesh),
+        loops_(loops),
+        neighbourhood_(mesh),
+        report_(report),
+        filled_(loops.size()),
         context_{mesh, topology, neighbourhood_, options} {
     for (std::size_t i = 0; i < loops.size(); ++i)
-      if (report.holes[i].outcome == HoleOutcome::failed && report.holes[i].reason.empty()) todo_.push_back(i);
+      if (report.holes[i].outcome == HoleOutcome::failed && report.holes[i].reason.empty())
+        todo_.push_back(i);
     // Long loops first, so that no thread is left alone with the longest.
     std::stable_sort(todo_.begin(), todo_.end(), [&](std::size_t a, std::size_t b) {
       return loops[a].vertices.size() > loops[b].vertices.size();
@@ -98,9 +105,9 @@ void Run::record(std::size_t hole) {
 void Run::fill_all(const Progress& progress) {
   double total = 0;
   for (std::size_t hole : todo_) total += static_cast<double>(loops_[hole].vertices.size());
-  // No exception may reach TBB: it would cut short the loops that other threads run inside this one, which then return
-  // as if they were done.
-  // What is done moves on by whole holes; steps within one are only asked whether to stop.
+  // No exception may reach TBB: it would cut short the loops that other threads run inside this one, which
+  // then return as if they were done. What is done moves on by whole holes; steps within one are only asked
+  // whether to stop.
   const Progress within = progress.part(0, 0, "closing holes");
   std::mutex mutex;
   std::exception_ptr error;
@@ -155,9 +162,9 @@ std::vector<Corners> Run::patches_but(std::size_t hole) const {
   return triangles;
 }
 
-// Each patch is clean by itself; where two of them meet, the later one is made again with the others as obstacles, and
-// if that is no help both as membranes, which bulge least. Only then the later one is tried in every way there is, and
-// left open when it meets the other even so.
+// Each patch is clean by itself; where two of them meet, the later one is made again with the others as
+// obstacles, and if that is no help both as membranes, which bulge least. Only then the later one is tried in
+// every way there is, and left open when it meets the other even so.
 void Run::separate(const Progress& progress) {
   const Progress within = progress.part(0, 0, "comparing the patches");
   CurveUnfoldingOptions soft = context_.options;

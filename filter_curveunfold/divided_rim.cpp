@@ -1,12 +1,12 @@
 #include "filter_curveunfold/divided_rim.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/core/error.h"
 #include "common/core/patch.h"
 #include "filter_curveunfold/loop_geometry.h"
 #include "filter_curveunfold/polygon_triangulation.h"
-
-#include <algorithm>
-#include <cmath>
 
 namespace meshcomplete {
 namespace {
@@ -32,8 +32,9 @@ constexpr int projection_directions = 48;
 // Two chords are close to each other when both pairs of ends are, by this share of the rim's vertices.
 constexpr double closeness = 0.1;
 
-// The part of the rim from position `from` to position `to`, both included, and the chord's points on the way back. They are
-// numbered from one end of the chord to the other; `backwards` says that this side meets them in the other order.
+// The part of the rim from position `from` to position `to`, both included, and the chord's points on the way
+// back. They are numbered from one end of the chord to the other; `backwards` says that this side meets them
+// in the other order.
 FlatSide side_of(const Rim& rim, Index from, Index to, const std::vector<Vector3>& points,
                  const std::vector<double>& lengths, bool backwards) {
   const Index n = static_cast<Index>(rim.positions.size());
@@ -108,7 +109,8 @@ void add_side(FlatSide side, const InputNeighbourhood& input, std::optional<doub
   }
   Unfolding unfolding = unfold(side.rim.positions, UnfoldOptions(), progress);
   divided.steps += unfolding.steps;
-  if (unfolding.polygon.empty()) throw CompletionError(stage, "A part of the divided rim could not be unfolded.");
+  if (unfolding.polygon.empty())
+    throw CompletionError(stage, "A part of the divided rim could not be unfolded.");
   side.polygon = std::move(unfolding.polygon);
   side.flat = triangulate_polygon(side.polygon);
   divided.sides.push_back(std::move(side));
@@ -120,7 +122,8 @@ std::vector<Chord> chords(const Rim& rim, const InputNeighbourhood& input, std::
                           const Progress& progress) {
   const std::size_t n = rim.positions.size();
   std::vector<double> way(n + 1, 0.0);  // along the rim
-  for (std::size_t i = 0; i < n; ++i) way[i + 1] = way[i] + (rim.positions[(i + 1) % n] - rim.positions[i]).norm();
+  for (std::size_t i = 0; i < n; ++i)
+    way[i + 1] = way[i] + (rim.positions[(i + 1) % n] - rim.positions[i]).norm();
   struct Candidate {
     double ratio;
     Chord chord;
@@ -134,7 +137,8 @@ std::vector<Chord> chords(const Rim& rim, const InputNeighbourhood& input, std::
     for (Index k = i + 2; k < n; k += static_cast<Index>(step)) {
       if (i == 0 && k + 1 == n) continue;  // an edge of the rim
       const double arc = std::min(way[k] - way[i], way[n] - (way[k] - way[i]));
-      if (arc < least_share * way[n] || std::binary_search(rim.forbidden.begin(), rim.forbidden.end(), Chord(i, k)))
+      if (arc < least_share * way[n] ||
+          std::binary_search(rim.forbidden.begin(), rim.forbidden.end(), Chord(i, k)))
         continue;
       candidates.push_back({(rim.positions[k] - rim.positions[i]).norm() / arc, {i, k}});
     }
@@ -157,7 +161,8 @@ std::vector<Chord> chords(const Rim& rim, const InputNeighbourhood& input, std::
     if (close_to_any(chosen, closeness) || close_to_any(obstructed, closeness_to_obstructed)) continue;
     progress.check();
     const auto [i, k] = candidate.chord;
-    (is_obstructed(input, rim.positions[i], rim.positions[k]) ? obstructed : chosen).push_back(candidate.chord);
+    (is_obstructed(input, rim.positions[i], rim.positions[k]) ? obstructed : chosen)
+        .push_back(candidate.chord);
   }
   return chosen;
 }
@@ -168,7 +173,8 @@ DividedRim divide(const Rim& rim, const Chord& chord, const InputNeighbourhood& 
   const Vector3 &a = rim.positions[from], &b = rim.positions[to];
   const double target = edge_length.value_or(0.5 * (rim.edge_length[from] + rim.edge_length[to]));
   if ((b - a).norm() > most_pieces * target)
-    throw CompletionError(stage, "A chord would need too many vertices at this edge length; ask for longer edges.");
+    throw CompletionError(stage,
+                          "A chord would need too many vertices at this edge length; ask for longer edges.");
   const int pieces = std::max(1, static_cast<int>(std::lround((b - a).norm() / target)));
   DividedRim divided;
   std::vector<double> lengths;
@@ -191,7 +197,8 @@ double expected_triangles(const DividedRim& divided, const EmbeddingOptions& opt
   return sum;
 }
 
-PatchMesh embed(const Rim& rim, const DividedRim& divided, const EmbeddingOptions& options, const Progress& progress) {
+PatchMesh embed(const Rim& rim, const DividedRim& divided, const EmbeddingOptions& options,
+                const Progress& progress) {
   std::vector<Vector3> positions = rim.positions;
   positions.insert(positions.end(), divided.points.begin(), divided.points.end());
   std::vector<Triangle> triangles;

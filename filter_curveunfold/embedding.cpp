@@ -1,21 +1,21 @@
 #include "filter_curveunfold/embedding.h"
 
-#include "common/core/patch_mesh.h"
-#include "common/core/patch_remeshing.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "common/core/patch_mesh.h"
+#include "common/core/patch_remeshing.h"
 
 namespace meshcomplete {
 namespace {
 
-// After two solves with remeshing in between the triangles no longer change much; a third moves the mean seam angle by
-// less than a degree.
+// After two solves with remeshing in between the triangles no longer change much; a third moves the mean seam
+// angle by less than a degree.
 constexpr int solves = 2;
 constexpr int rounds_between = 2;
 
-// The first of the two solves only has to bring the triangles near to where they will be: on large patches, from this many
-// vertices on, it is done on a patch of edges so many times longer.
+// The first of the two solves only has to bring the triangles near to where they will be: on large patches,
+// from this many vertices on, it is done on a patch of edges so many times longer.
 constexpr double vertices_for_coarse_start = 1000;
 constexpr double coarsening = 2.0;
 
@@ -36,7 +36,8 @@ TriangleMesh with_ring(const PatchMesh& patch, const Rim& rim, std::vector<char>
   const Index rim_size = static_cast<Index>(patch.rim_size());
   TriangleMesh surface{patch.positions(), patch.triangles()};
   const Index offset = static_cast<Index>(surface.vertices.size()) - rim_size;
-  surface.vertices.insert(surface.vertices.end(), rim.ring.vertices.begin() + rim_size, rim.ring.vertices.end());
+  surface.vertices.insert(surface.vertices.end(), rim.ring.vertices.begin() + rim_size,
+                          rim.ring.vertices.end());
   for (Triangle t : rim.ring.triangles) {
     for (Index& corner : t)
       if (corner >= rim_size) corner += offset;
@@ -47,7 +48,8 @@ TriangleMesh with_ring(const PatchMesh& patch, const Rim& rim, std::vector<char>
   return surface;
 }
 
-void solve(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeights weights, const Progress& progress) {
+void solve(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeights weights,
+           const Progress& progress) {
   std::vector<char> fixed;
   TriangleMesh surface = with_ring(patch, rim, fixed);
   minimize_energy(surface, fixed, energy, weights, progress);
@@ -64,7 +66,8 @@ std::vector<double> target_lengths(const Rim& rim, const EmbeddingOptions& optio
   return target;
 }
 
-double expected_triangles(const Rim& rim, const std::vector<Triangle>& flat, const EmbeddingOptions& options) {
+double expected_triangles(const Rim& rim, const std::vector<Triangle>& flat,
+                          const EmbeddingOptions& options) {
   return triangles_to_cover(rim.positions, flat, target_lengths(rim, options));
 }
 
@@ -76,15 +79,16 @@ PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const Embeddi
   remeshing.forbidden = rim.forbidden;
   remeshing.rounds = rounds_between;
   // A patch that would be too large is refined at once, and refused.
-  const double expected = 0.5 * triangles_to_cover(patch.positions(), flat, target);  // two triangles per vertex
+  const double expected =
+      0.5 * triangles_to_cover(patch.positions(), flat, target);  // two triangles per vertex
   const bool coarse =
       expected > vertices_for_coarse_start && expected < static_cast<double>(remeshing.max_vertices);
   if (coarse)
     for (double& length : target) length *= coarsening;
   refine(patch, target, remeshing, progress);
   if (patch.vertex_count() > patch.rim_size()) {
-    // The embedded flat triangulation is creased along its chords; the membrane with uniform weights, which cannot fold
-    // more than its rim, is a safe start for everything that looks at angles.
+    // The embedded flat triangulation is creased along its chords; the membrane with uniform weights, which
+    // cannot fold more than its rim, is a safe start for everything that looks at angles.
     solve(patch, rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
     for (int i = 0; i < solves; ++i) {
       if (coarse && i == solves - 1)

@@ -1,5 +1,12 @@
 #include "filter_curveunfold/hole_filler.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+
 #include "common/core/error.h"
 #include "common/core/patch_relaxation.h"
 #include "common/core/patch_retriangulation.h"
@@ -11,23 +18,18 @@
 #include "filter_curveunfold/pinched_rim.h"
 #include "filter_curveunfold/polygon_triangulation.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <optional>
-#include <tuple>
-#include <utility>
-
 namespace meshcomplete {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
-// What is done, one after the other, to a patch that is tangled somewhere: its triangles there replaced by others, over few
-// rings and then more; relaxed, with enough sweeps for a few rings to settle on the membrane; and at last vertices moved one
-// by one, as long as that helps.
+// What is done, one after the other, to a patch that is tangled somewhere: its triangles there replaced by
+// others, over few rings and then more; relaxed, with enough sweeps for a few rings to settle on the
+// membrane; and at last vertices moved one by one, as long as that helps.
 enum class Mending { retriangulate, relax, untangle };
 struct MendingStep {
   Mending mending;
@@ -47,28 +49,30 @@ constexpr std::array<MendingStep, 12> mending_steps = {{{Mending::retriangulate,
                                                         {Mending::retriangulate, 2}}};
 constexpr int relaxation_sweeps = 10;
 constexpr int untangling_rounds = 3;
-// Patches with more tangled triangles are not worth it. The bounds are per patch, but for that of untanglings, which is
-// for all tries with one flat triangulation together.
+// Patches with more tangled triangles are not worth it. The bounds are per patch, but for that of
+// untanglings, which is for all tries with one flat triangulation together.
 constexpr std::size_t most_to_mend = 300;
 constexpr std::size_t most_to_untangle = 60;
 constexpr int most_untanglings = 3;
 constexpr int most_passes = 3;  // over all steps
 
-// With more tangled triangles than this another energy or resolution is no help: only another triangulation may be. Of a
-// patch that will have many triangles a coarse one is made first, with enough of them to follow its rim, and tells how
-// many there will be: patches meet along curves, so that their number grows with the square root of all.
+// With more tangled triangles than this another energy or resolution is no help: only another triangulation
+// may be. Of a patch that will have many triangles a coarse one is made first, with enough of them to follow
+// its rim, and tells how many there will be: patches meet along curves, so that their number grows with the
+// square root of all.
 constexpr std::size_t most_to_try_again = 1000;
 constexpr double triangles_to_probe = 20000;
 constexpr double triangles_of_probe = 10000;
 constexpr double probe_triangles_per_edge = 4;
 
-// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is its shape.
-// Nor with another unfolding when the patches of other holes are in its way: they are there whatever the unfolding.
+// A patch of more triangles is not tried again at twice the resolution: that takes long, and its trouble is
+// its shape. Nor with another unfolding when the patches of other holes are in its way: they are there
+// whatever the unfolding.
 constexpr std::size_t large_patch = 5000;
 
-// Ways to the plane, each with another triangulation: what is asked for; descended even where a shorter way was found, so
-// that the rim develops as a whole; opened further towards a convex polygon; and divided by a chord into rims that are
-// unfolded each by itself.
+// Ways to the plane, each with another triangulation: what is asked for; descended even where a shorter way
+// was found, so that the rim develops as a whole; opened further towards a convex polygon; and divided by a
+// chord into rims that are unfolded each by itself.
 enum class Way { asked, descended, stretched, divided };
 
 // How many chords are tried, and how often their sides are divided again.
@@ -80,25 +84,29 @@ struct Try {
   Way way;
   SurfaceEnergy energy;
   double resolution;
-  double flap_height;  // of the flaps that open a pinched rim
+  double flap_height;     // of the flaps that open a pinched rim
   std::size_t chord = 0;  // of the best chords, to divide the rim by
 };
 
 // What is asked for, then the others from stiff to soft: a membrane overshoots least.
 std::vector<SurfaceEnergy> energies(SurfaceEnergy asked) {
   switch (asked) {
-    case SurfaceEnergy::normal_variation: return {asked, SurfaceEnergy::thin_plate, SurfaceEnergy::membrane};
-    case SurfaceEnergy::thin_plate: return {asked, SurfaceEnergy::membrane};
-    case SurfaceEnergy::membrane: return {asked, SurfaceEnergy::thin_plate};
+    case SurfaceEnergy::normal_variation:
+      return {asked, SurfaceEnergy::thin_plate, SurfaceEnergy::membrane};
+    case SurfaceEnergy::thin_plate:
+      return {asked, SurfaceEnergy::membrane};
+    case SurfaceEnergy::membrane:
+      return {asked, SurfaceEnergy::thin_plate};
   }
   return {asked};
 }
 
-// What is asked for; the other energies; more resolution; and then other unfoldings. A pinched rim is opened behind the
-// surface first, where it shows least.
+// What is asked for; the other energies; more resolution; and then other unfoldings. A pinched rim is opened
+// behind the surface first, where it shows least.
 std::vector<Try> tries(const CurveUnfoldingOptions& options, bool pinched) {
   std::vector<Try> list;
-  const std::vector<double> heights = pinched ? std::vector<double>{0.2, -0.2, 0.07, -0.07} : std::vector<double>{0.0};
+  const std::vector<double> heights =
+      pinched ? std::vector<double>{0.2, -0.2, 0.07, -0.07} : std::vector<double>{0.0};
   for (Way way : {Way::asked, Way::descended, Way::stretched}) {
     if (way == Way::descended && options.unfolding.method != UnfoldMethod::automatic) continue;
     // Annealing again would take as long as the first time, to end in much the same polygon.
@@ -124,11 +132,16 @@ double length(const Points& points) {
 
 std::string unfolding_name(UnfoldOutcome outcome) {
   switch (outcome) {
-    case UnfoldOutcome::projected: return "projected";
-    case UnfoldOutcome::annealed: return "annealed";
-    case UnfoldOutcome::untangled: return "untangled";
-    case UnfoldOutcome::knotted: return "knotted";
-    case UnfoldOutcome::not_unfolded: return "not unfolded";
+    case UnfoldOutcome::projected:
+      return "projected";
+    case UnfoldOutcome::annealed:
+      return "annealed";
+    case UnfoldOutcome::untangled:
+      return "untangled";
+    case UnfoldOutcome::knotted:
+      return "knotted";
+    case UnfoldOutcome::not_unfolded:
+      return "not unfolded";
   }
   return "";
 }
@@ -137,7 +150,8 @@ std::string why_not_unfolded(const Unfolding& unfolding) {
   if (unfolding.outcome == UnfoldOutcome::knotted)
     return "the rim is knotted (determinant " + std::to_string(unfolding.knot_determinant.value_or(0)) +
            "), so no disk without self-intersections can close it";
-  return "the rim could not be unfolded to the plane without crossing itself; try the other unfolding method or more "
+  return "the rim could not be unfolded to the plane without crossing itself; try the other unfolding method "
+         "or more "
          "restarts";
 }
 
@@ -145,8 +159,12 @@ class HoleFiller {
  public:
   HoleFiller(const HoleFillerContext& context, const BoundaryLoop& loop,
              const std::vector<std::array<Vector3, 3>>& obstacles, const Progress& progress)
-      : context_(context), loop_(loop), obstacles_(obstacles), progress_(progress),
-        rim_(collect_rim(context.mesh, context.topology, loop)), pinched_(is_pinched(rim_)) {}
+      : context_(context),
+        loop_(loop),
+        obstacles_(obstacles),
+        progress_(progress),
+        rim_(collect_rim(context.mesh, context.topology, loop)),
+        pinched_(is_pinched(rim_)) {}
 
   FilledHole fill();
 
@@ -177,12 +195,13 @@ class HoleFiller {
   FilledHole result_;
   bool mended_ = false;
   int untanglings_ = 0;
-  bool hopeless_ = false;  // with the flat triangulation at hand
-  std::size_t triangles_ = 0;  // of the last patch that was embedded at the resolution asked for
+  bool hopeless_ = false;       // with the flat triangulation at hand
+  std::size_t triangles_ = 0;   // of the last patch that was embedded at the resolution asked for
   std::vector<double> wanted_;  // edge lengths, per vertex of the rim
 };
 
-// Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is none yet.
+// Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is
+// none yet.
 bool HoleFiller::unfold_rim(const Try& plan) {
   const std::tuple wanted(plan.way, plan.flap_height, plan.chord);
   const bool divided = plan.way == Way::divided;
@@ -192,7 +211,8 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   hopeless_ = false;
   opened_ = open_pinches(rim_, plan.flap_height);
   in_the_way_ = obstacles_;
-  for (const Triangle& t : opened_.flaps) in_the_way_.push_back({flap_corner(t[0]), flap_corner(t[1]), flap_corner(t[2])});
+  for (const Triangle& t : opened_.flaps)
+    in_the_way_.push_back({flap_corner(t[0]), flap_corner(t[1]), flap_corner(t[2])});
   result_.polygon.clear();
   result_.flat.clear();
   if (divided) return divide_rim(plan.chord);
@@ -218,13 +238,15 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   return true;
 }
 
-// Divides the rim by one of the best chords, and lays its sides out one beside the other, as long as they are in space.
+// Divides the rim by one of the best chords, and lays its sides out one beside the other, as long as they are
+// in space.
 bool HoleFiller::divide_rim(std::size_t chord) {
   if (unfolding_.outcome == UnfoldOutcome::knotted) return false;
   const auto start = Clock::now();
   if (chord == 0) chords_ = chords(opened_.rim, context_.neighbourhood, most_chords, progress_);
   if (chord >= chords_.size()) return false;
-  divided_ = divide(opened_.rim, chords_[chord], context_.neighbourhood, context_.options.edge_length, divisions, progress_);
+  divided_ = divide(opened_.rim, chords_[chord], context_.neighbourhood, context_.options.edge_length,
+                    divisions, progress_);
   result_.times.steps += divided_.steps;
   double left = 0;
   for (const FlatSide& side : divided_.sides) {
@@ -253,7 +275,8 @@ Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
   const Index rim_size = static_cast<Index>(loop_.vertices.size());
   patch.vertices = opened_.corners;
   const Index first_inner = patch.input_vertices + static_cast<Index>(opened_.corners.size());
-  for (Index v = rim_size; v < embedded.vertex_count(); ++v) patch.vertices.push_back(as_stored(embedded.position(v)));
+  for (Index v = rim_size; v < embedded.vertex_count(); ++v)
+    patch.vertices.push_back(as_stored(embedded.position(v)));
   const auto rim_vertex = [&](Index v) {
     return v < rim_size ? loop_.vertices[v] : patch.input_vertices + (v - rim_size);
   };
@@ -263,7 +286,8 @@ Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
       corners[k] = t[k] < rim_size ? rim_vertex(opened_.vertex_of[t[k]]) : first_inner + (t[k] - rim_size);
     patch.triangles.push_back(corners);
   }
-  for (const Triangle& t : opened_.flaps) patch.triangles.push_back({rim_vertex(t[0]), rim_vertex(t[1]), rim_vertex(t[2])});
+  for (const Triangle& t : opened_.flaps)
+    patch.triangles.push_back({rim_vertex(t[0]), rim_vertex(t[1]), rim_vertex(t[2])});
   return patch;
 }
 
@@ -275,13 +299,15 @@ bool can_be_mended(PatchDefect defect) {
     case PatchDefect::degenerate_face:
     case PatchDefect::coincident_vertices:
     case PatchDefect::meets_itself:
-    case PatchDefect::meets_input: return true;
-    default: return false;
+    case PatchDefect::meets_input:
+      return true;
+    default:
+      return false;
   }
 }
 
-// Checks the patch. When triangles meet what they must not, returns them, but none of the flaps, which follow the embedded
-// triangles and stay as they are. `defect` is empty when all is well.
+// Checks the patch. When triangles meet what they must not, returns them, but none of the flaps, which follow
+// the embedded triangles and stay as they are. `defect` is empty when all is well.
 std::vector<Index> HoleFiller::tangled_triangles(const Patch& patch, std::string& defect) {
   const auto start = Clock::now();
   PatchCheck check = check_patch(context_.neighbourhood, patch, {&loop_}, progress_);
@@ -290,7 +316,8 @@ std::vector<Index> HoleFiller::tangled_triangles(const Patch& patch, std::string
   if (defect.empty() && !obstacles_.empty()) {
     std::vector<std::array<Vector3, 3>> triangles;
     for (const Triangle& t : patch.triangles) triangles.push_back(corners(context_.mesh, patch, t));
-    for (const auto& pair : improper_pairs_between(triangles, obstacles_)) check.patch_triangles.push_back(pair.first);
+    for (const auto& pair : improper_pairs_between(triangles, obstacles_))
+      check.patch_triangles.push_back(pair.first);
     if (!check.patch_triangles.empty()) defect = "the patch meets the patch of another hole";
   }
   const std::size_t embedded = patch.triangles.size() - opened_.flaps.size();
@@ -323,7 +350,8 @@ std::string HoleFiller::probe(const Try& plan, EmbeddingOptions options) {
   return defect;
 }
 
-// Embeds, checks, and mends the patch where it is tangled. Returns the defect that is left, or fills `result_.patch`.
+// Embeds, checks, and mends the patch where it is tangled. Returns the defect that is left, or fills
+// `result_.patch`.
 std::string HoleFiller::attempt(const Try& plan) {
   auto start = Clock::now();
   EmbeddingOptions options;
@@ -365,8 +393,8 @@ std::string HoleFiller::attempt(const Try& plan) {
 bool HoleFiller::mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step) {
   switch (step.mending) {
     case Mending::retriangulate:
-      return retriangulate(embedded, tangled, opened_.rim, wanted_, context_.neighbourhood, in_the_way_, step.rings,
-                           progress_) > 0;
+      return retriangulate(embedded, tangled, opened_.rim, wanted_, context_.neighbourhood, in_the_way_,
+                           step.rings, progress_) > 0;
     case Mending::relax:
       relax_around(embedded, tangled, step.rings, relaxation_sweeps);
       return true;
@@ -396,7 +424,8 @@ FilledHole HoleFiller::fill() {
   if (obstructed > 0) {
     result_.reason = "other faces of the mesh pass through " + std::to_string(obstructed) +
                      (obstructed == 1 ? " edge" : " edges") +
-                     " of this rim, so that every patch would meet them; apply 'Select Self Intersecting Faces' and delete "
+                     " of this rim, so that every patch would meet them; apply 'Select Self Intersecting "
+                     "Faces' and delete "
                      "them first";
     return std::move(result_);
   }

@@ -1,6 +1,10 @@
 // One hole: unfold, triangulate, embed, check, and try again another way when the check fails.
 #pragma once
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "common/core/boundary_loops.h"
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
@@ -9,16 +13,12 @@
 #include "common/core/progress.h"
 #include "filter_curveunfold/curve_unfolding.h"
 
-#include <array>
-#include <string>
-#include <vector>
-
 namespace meshcomplete {
 
 /// The patch of one hole; empty when every try failed, and then `reason` says why.
 struct FilledHole {
   Patch patch;
-  std::string route;    ///< unfolding, energy, and which try it was
+  std::string route;  ///< unfolding, energy, and which try it was
   std::string reason;
   HoleTimes times;
   std::vector<Eigen::Vector2d> polygon;  ///< the unfolded rim, scaled to the rim's own length
@@ -34,9 +34,10 @@ struct HoleFillerContext {
   bool thorough = true;  ///< false: only the unfolding that is asked for is tried
 };
 
-/// Fills one hole. `obstacles` are triangles beyond the input that the patch must not meet either (patches of other
-/// holes). Thread-safe. Throws `Cancelled`; every CompletionError ends up in `reason`.
+/// Fills one hole. `obstacles` are triangles beyond the input that the patch must not meet either (patches of
+/// other holes). Thread-safe. Throws `Cancelled`; every CompletionError ends up in `reason`.
 FilledHole fill_hole(const HoleFillerContext& context, const BoundaryLoop& loop,
-                     const std::vector<std::array<Vector3, 3>>& obstacles, const Progress& progress = Progress());
+                     const std::vector<std::array<Vector3, 3>>& obstacles,
+                     const Progress& progress = Progress());
 
 }  // namespace meshcomplete

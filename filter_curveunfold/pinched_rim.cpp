@@ -1,14 +1,13 @@
 #include "filter_curveunfold/pinched_rim.h"
 
-#include "common/core/patch.h"
-
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
+
+#include "common/core/patch.h"
 
 namespace meshcomplete {
 namespace {
@@ -74,7 +73,8 @@ class PinchOpener {
     const Index n = static_cast<Index>(original_.positions.size());
     const Index before = (vertex + n - 1) % n, after = (vertex + 1) % n;
     const Vector3& p = original_.positions[vertex];
-    const double edge = std::min((original_.positions[before] - p).norm(), (original_.positions[after] - p).norm());
+    const double edge =
+        std::min((original_.positions[before] - p).norm(), (original_.positions[after] - p).norm());
     const Frame frame = frame_at(original_, vertex);
     const Vector3 corner = as_stored(p + edge * (std::abs(height_) * frame.inwards - height_ * frame.normal));
     const Index number = n + static_cast<Index>(opened_.corners.size());

@@ -1,11 +1,11 @@
 #include "filter_curveunfold/polygon_triangulation.h"
 
-#include "common/core/error.h"
-
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include "common/core/error.h"
 
 namespace meshcomplete {
 namespace {

@@ -1,24 +1,24 @@
 #include "common/core/boundary_loops.h"
 
-#include "common/core/triangle_intersection.h"
-
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <tuple>
 #include <unordered_map>
+
+#include "common/core/triangle_intersection.h"
 
 namespace meshcomplete {
 namespace {
 
 constexpr Index none = 0xffffffffu;
 
-// A sheet whose area is at most this many times the area that its outer rim encloses, seen from the direction in which
-// that is greatest, is flat enough for a patch to lie on it. (A hemisphere has 2, a cap of 48 degrees 1.2.)
+// A sheet whose area is at most this many times the area that its outer rim encloses, seen from the direction
+// in which that is greatest, is flat enough for a patch to lie on it. (A hemisphere has 2, a cap of 48
+// degrees 1.2.)
 constexpr double open_sheet_area_ratio = 1.2;
 
-// An end of a boundary half-edge: 2 * i for the origin and 2 * i + 1 for the target of boundary half-edge number i.
-// A patch walks the half-edge from its target to its origin.
+// An end of a boundary half-edge: 2 * i for the origin and 2 * i + 1 for the target of boundary half-edge
+// number i. A patch walks the half-edge from its target to its origin.
 using EdgeEnd = Index;
 
 class Tracer {
@@ -60,7 +60,8 @@ EdgeEnd Tracer::end_of_fan(EdgeEnd end) const {
     const bool leaves_pivot = corner(half_edge, 0) == pivot;
     const Index other = face + (leaves_pivot ? (side + 2) % 3 : (side + 1) % 3);
     const Index opposite = topology_.opposite[other];
-    if (opposite == MeshTopology::boundary) return 2 * boundary_number(other) + (corner(other, 0) == pivot ? 0 : 1);
+    if (opposite == MeshTopology::boundary)
+      return 2 * boundary_number(other) + (corner(other, 0) == pivot ? 0 : 1);
     if (opposite == MeshTopology::non_manifold) return none;
     half_edge = opposite;
   }
@@ -177,7 +178,8 @@ Vector3 vector_area(const TriangleMesh& mesh, const BoundaryLoop& loop) {
 
 bool has_edge_without_length(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   for (std::size_t i = 0; i < loop.vertices.size(); ++i)
-    if (mesh.vertices[loop.vertices[i]] == mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]]) return true;
+    if (mesh.vertices[loop.vertices[i]] == mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]])
+      return true;
   return false;
 }
 
@@ -189,15 +191,16 @@ bool on_one_line(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   return true;
 }
 
-// Finds sheets that a patch would cover a second time, by flooding the surface from the rim until it is clearly larger
-// than what the rim encloses: the flood ends early at every true hole.
+// Finds sheets that a patch would cover a second time, by flooding the surface from the rim until it is
+// clearly larger than what the rim encloses: the flood ends early at every true hole.
 class SheetTest {
  public:
   SheetTest(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops)
       : mesh_(mesh), topology_(topology), loops_(loops), stamp_(mesh.triangles.size(), none) {
     for (std::size_t i = 0; i < loops.size(); ++i) {
       perimeters_.push_back(perimeter(mesh, loops[i]));
-      areas_.push_back(loops[i].defect == LoopDefect::none ? vector_area(mesh, loops[i]) : Vector3(Vector3::Zero()));
+      areas_.push_back(loops[i].defect == LoopDefect::none ? vector_area(mesh, loops[i])
+                                                           : Vector3(Vector3::Zero()));
       for (Index face : loops[i].faces) loops_at_face_.emplace(face, i);
     }
   }
@@ -225,7 +228,8 @@ class SheetTest {
     if (area > limit) return LoopDefect::none;
     std::sort(rims.begin(), rims.end());
     rims.erase(std::unique(rims.begin(), rims.end()), rims.end());
-    // What the sheet's faces add up to as vectors is what all its rims enclose; that of a band or a short tube is nothing.
+    // What the sheet's faces add up to as vectors is what all its rims enclose; that of a band or a short
+    // tube is nothing.
     Vector3 enclosed = areas_[loop];
     for (std::size_t rim : rims)
       if (rim != loop) {
@@ -249,20 +253,28 @@ class SheetTest {
 
 std::string describe(LoopDefect defect) {
   switch (defect) {
-    case LoopDefect::none: return "";
+    case LoopDefect::none:
+      return "";
     case LoopDefect::non_manifold_edge:
-      return "edges shared by three or more faces end at this rim, so it is not clear where the hole goes on; apply "
-             "'Select non Manifold Edges' and 'Delete Selected Faces' or 'Repair non Manifold Edges by removing faces' first";
+      return "edges shared by three or more faces end at this rim, so it is not clear where the hole goes "
+             "on; apply "
+             "'Select non Manifold Edges' and 'Delete Selected Faces' or 'Repair non Manifold Edges by "
+             "removing faces' first";
     case LoopDefect::inconsistent_normals:
-      return "the faces round this rim do not agree which side is the front; apply 'Re-Orient all faces coherentely' "
+      return "the faces round this rim do not agree which side is the front; apply 'Re-Orient all faces "
+             "coherentely' "
              "first (a one-sided surface such as a Moebius strip cannot be closed)";
     case LoopDefect::isolated_triangle:
-      return "this is the rim of a single triangle, not a hole; a patch would cover the triangle a second time";
+      return "this is the rim of a single triangle, not a hole; a patch would cover the triangle a second "
+             "time";
     case LoopDefect::open_sheet:
-      return "this is the outer rim of an open, nearly flat sheet, not a hole; a patch would cover the sheet a second time";
+      return "this is the outer rim of an open, nearly flat sheet, not a hole; a patch would cover the sheet "
+             "a second time";
     case LoopDefect::edge_without_length:
-      return "two neighbouring vertices of this rim lie at the same position; apply 'Merge Close Vertices' first";
-    case LoopDefect::degenerate_rim: return "all vertices of this rim lie on one straight line";
+      return "two neighbouring vertices of this rim lie at the same position; apply 'Merge Close Vertices' "
+             "first";
+    case LoopDefect::degenerate_rim:
+      return "all vertices of this rim lie on one straight line";
   }
   return "";
 }
@@ -270,7 +282,8 @@ std::string describe(LoopDefect defect) {
 double perimeter(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   double sum = 0;
   for (std::size_t i = 0; i < loop.vertices.size(); ++i)
-    sum += (mesh.vertices[loop.vertices[i]] - mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]]).norm();
+    sum += (mesh.vertices[loop.vertices[i]] - mesh.vertices[loop.vertices[(i + 1) % loop.vertices.size()]])
+               .norm();
   return sum;
 }
 

@@ -6,9 +6,9 @@
 
 namespace meshcomplete {
 
-/// Something that stops the whole operation. `what()` is one or two sentences that a MeshLab user understands and can
-/// act on; `stage()` names the step that failed ("reading the mesh", "tracing boundary loops", ...). A hole that cannot
-/// be closed is not an error: it is data in the report.
+/// Something that stops the whole operation. `what()` is one or two sentences that a MeshLab user understands
+/// and can act on; `stage()` names the step that failed ("reading the mesh", "tracing boundary loops", ...).
+/// A hole that cannot be closed is not an error: it is data in the report.
 class CompletionError : public std::runtime_error {
  public:
   CompletionError(std::string stage, const std::string& message)

@@ -1,14 +1,13 @@
 #include "common/core/fairing.h"
 
-#include "common/core/error.h"
-
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
+
+#include "common/core/error.h"
 
 namespace meshcomplete {
 namespace {
@@ -20,14 +19,16 @@ using Cholesky = Eigen::SimplicialLDLT<SparseMatrix>;
 
 constexpr const char* stage = "computing the minimum-energy surface";
 
-// Cotangents are bounded as if no angle were outside 3 to 177 degrees: needles of the rim's ring would otherwise rule the
-// whole system, and negative weights could make it indefinite.
+// Cotangents are bounded as if no angle were outside 3 to 177 degrees: needles of the rim's ring would
+// otherwise rule the whole system, and negative weights could make it indefinite.
 constexpr double largest_cotangent = 19.0;
-// The least weight of an edge, relative to the cotangent weight 1/sqrt(3) of an equilateral mesh's edge: about 1 %.
+// The least weight of an edge, relative to the cotangent weight 1/sqrt(3) of an equilateral mesh's edge:
+// about 1 %.
 constexpr double smallest_weight = 0.006;
 
-// The descent of the normal variation: its steps, the first one's longest move relative to the surface's diagonal, and how
-// often a step that does not lower the energy is halved. After these steps the energy falls by less than a percent a step.
+// The descent of the normal variation: its steps, the first one's longest move relative to the surface's
+// diagonal, and how often a step that does not lower the energy is halved. After these steps the energy falls
+// by less than a percent a step.
 constexpr int descent_steps = 30;
 constexpr double first_move = 1e-3;
 constexpr int most_halvings = 12;
@@ -35,7 +36,8 @@ constexpr int most_halvings = 12;
 double bounded_cotangent(const Vector3& u, const Vector3& v) {
   const double area = u.cross(v).norm();
   const double inner = u.dot(v);
-  if (!(area * largest_cotangent > std::abs(inner))) return inner > 0 ? largest_cotangent : -largest_cotangent;
+  if (!(area * largest_cotangent > std::abs(inner)))
+    return inner > 0 ? largest_cotangent : -largest_cotangent;
   return inner / area;
 }
 
@@ -154,9 +156,11 @@ void minimize_membrane(TriangleMesh& surface, const Numbering& numbering, Laplac
   minimize_quadratic(surface, numbering, make_laplacian(surface, weights).matrix);
 }
 
-// With one equation U^2 = 0 for every unknown the least sum of squares is zero, and these equations, multiplied by the
-// masses, are the rows L M^-1 L of the free vertices. The rows of the rim's vertices in the inner L bring in the ring.
-void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, LaplacianWeights weights, Cholesky& solver) {
+// With one equation U^2 = 0 for every unknown the least sum of squares is zero, and these equations,
+// multiplied by the masses, are the rows L M^-1 L of the free vertices. The rows of the rim's vertices in the
+// inner L bring in the ring.
+void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, LaplacianWeights weights,
+                         Cholesky& solver) {
   const Laplacian laplacian = make_laplacian(surface, weights);
   const SparseMatrix inner = laplacian.matrix * numbering.pick_free;
   const SparseMatrix weighted = laplacian.mass.cwiseInverse().asDiagonal() * inner;
@@ -183,7 +187,8 @@ std::vector<Hinge> find_hinges(const TriangleMesh& surface, const std::vector<ch
   for (Index f = 0; f < surface.triangles.size(); ++f) {
     const Triangle& t = surface.triangles[f];
     still.push_back(fixed[t[0]] && fixed[t[1]] && fixed[t[2]]);
-    for (int k = 0; k < 3; ++k) sides.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3]), f});
+    for (int k = 0; k < 3; ++k)
+      sides.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3]), f});
   }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
@@ -200,17 +205,19 @@ std::vector<Hinge> find_hinges(const TriangleMesh& surface, const std::vector<ch
 // The sum over hinges of length times |n - n'|^2 / 2, and its gradient.
 class NormalVariation {
  public:
-  NormalVariation(const TriangleMesh& surface, const std::vector<char>& fixed) : hinges_(find_hinges(surface, fixed)) {}
+  NormalVariation(const TriangleMesh& surface, const std::vector<char>& fixed)
+      : hinges_(find_hinges(surface, fixed)) {}
 
   double value(const TriangleMesh& surface) {
     update_normals(surface);
     double sum = 0;
-    for (const Hinge& hinge : hinges_) sum += hinge.length * (1.0 - normals_[hinge.left].dot(normals_[hinge.right]));
+    for (const Hinge& hinge : hinges_)
+      sum += hinge.length * (1.0 - normals_[hinge.left].dot(normals_[hinge.right]));
     return sum;
   }
 
-  /// One row per vertex, at the positions of the last call of `value`. A normal N / |N| with N = a x b + b x c + c x a
-  /// answers to a shift of a by the part of (shift x (b - c)) / |N| across the normal.
+  /// One row per vertex, at the positions of the last call of `value`. A normal N / |N| with N = a x b + b x
+  /// c + c x a answers to a shift of a by the part of (shift x (b - c)) / |N| across the normal.
   Coordinates gradient(const TriangleMesh& surface) const {
     std::vector<Vector3> by_normal(normals_.size(), Vector3::Zero());
     for (const Hinge& hinge : hinges_) {
@@ -247,10 +254,11 @@ class NormalVariation {
   std::vector<double> areas_;  // twice
 };
 
-// Gradient descent from the thin plate's minimum, in the thin plate's own metric, in which steps are smooth and few are
-// needed: the two energies agree to first order on a nearly flat patch.
-void minimize_normal_variation(TriangleMesh& surface, const std::vector<char>& fixed, const Numbering& numbering,
-                               LaplacianWeights weights, const Progress& progress) {
+// Gradient descent from the thin plate's minimum, in the thin plate's own metric, in which steps are smooth
+// and few are needed: the two energies agree to first order on a nearly flat patch.
+void minimize_normal_variation(TriangleMesh& surface, const std::vector<char>& fixed,
+                               const Numbering& numbering, LaplacianWeights weights,
+                               const Progress& progress) {
   Cholesky metric;
   minimize_thin_plate(surface, numbering, weights, metric);
   NormalVariation variation(surface, fixed);
@@ -294,16 +302,20 @@ void expect_anchored(const TriangleMesh& surface, const std::vector<char>& fixed
   for (Index v = 0; v < fixed.size(); ++v)
     if (fixed[v]) anchored[root(v)] = 1;
   for (Index v = 0; v < fixed.size(); ++v)
-    if (!anchored[root(v)]) throw CompletionError(stage, "A piece of the surface is joined to nothing that holds it.");
+    if (!anchored[root(v)])
+      throw CompletionError(stage, "A piece of the surface is joined to nothing that holds it.");
 }
 
 }  // namespace
 
 const char* name(SurfaceEnergy energy) {
   switch (energy) {
-    case SurfaceEnergy::membrane: return "membrane";
-    case SurfaceEnergy::thin_plate: return "thin plate";
-    case SurfaceEnergy::normal_variation: return "normal variation";
+    case SurfaceEnergy::membrane:
+      return "membrane";
+    case SurfaceEnergy::thin_plate:
+      return "thin plate";
+    case SurfaceEnergy::normal_variation:
+      return "normal variation";
   }
   return "";
 }
@@ -313,7 +325,8 @@ void minimize_energy(TriangleMesh& surface, const std::vector<char>& fixed, Surf
   const Numbering numbering(fixed);
   if (numbering.free_vertices.empty()) return;
   expect_anchored(surface, fixed);
-  // Centre and unit size: the masses' units and the rounding of far-away coordinates drop out of the equations.
+  // Centre and unit size: the masses' units and the rounding of far-away coordinates drop out of the
+  // equations.
   Eigen::AlignedBox3d box;
   for (const Vector3& p : surface.vertices) box.extend(p);
   const Vector3 centre = box.center();
@@ -323,7 +336,9 @@ void minimize_energy(TriangleMesh& surface, const std::vector<char>& fixed, Surf
   for (Vector3& p : surface.vertices) p = (p - centre) / scale;
   progress.check();
   switch (energy) {
-    case SurfaceEnergy::membrane: minimize_membrane(surface, numbering, weights); break;
+    case SurfaceEnergy::membrane:
+      minimize_membrane(surface, numbering, weights);
+      break;
     case SurfaceEnergy::thin_plate: {
       Cholesky solver;
       minimize_thin_plate(surface, numbering, weights, solver);

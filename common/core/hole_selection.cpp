@@ -1,10 +1,10 @@
 #include "common/core/hole_selection.h"
 
-#include "common/core/error.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "common/core/error.h"
 
 namespace meshcomplete {
 namespace {
@@ -15,7 +15,8 @@ bool any(const std::vector<char>& flags) {
   return std::any_of(flags.begin(), flags.end(), [](char flag) { return flag != 0; });
 }
 
-void check_options(const TriangleMesh& mesh, const MeshSelection& selection, const HoleSelectionOptions& options) {
+void check_options(const TriangleMesh& mesh, const MeshSelection& selection,
+                   const HoleSelectionOptions& options) {
   if (options.max_edges && *options.max_edges < 3)
     throw CompletionError(stage, "The greatest number of edges of a hole must be at least 3, or 0 for any.");
   if (options.max_perimeter && !(std::isfinite(*options.max_perimeter) && *options.max_perimeter > 0))
@@ -25,8 +26,10 @@ void check_options(const TriangleMesh& mesh, const MeshSelection& selection, con
       (!selection.faces.empty() && selection.faces.size() != mesh.triangles.size()))
     throw CompletionError(stage, "The selection does not belong to this mesh.");
   if (!any(selection.vertices) && !any(selection.faces))
-    throw CompletionError(stage, "Only holes at the selection were asked for, but nothing is selected. Select some faces or "
-                                 "vertices at the holes, or switch off 'Selected'.");
+    throw CompletionError(
+        stage,
+        "Only holes at the selection were asked for, but nothing is selected. Select some faces or "
+        "vertices at the holes, or switch off 'Selected'.");
 }
 
 // For every vertex, whether it is selected or a corner of a selected face.

@@ -1,37 +1,42 @@
 #include "common/core/mesh_topology.h"
 
-#include "common/core/error.h"
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <string>
 
+#include "common/core/error.h"
+
 namespace meshcomplete {
 namespace {
 
 constexpr Index unset = 0xfffffffdu;
 
-Index origin(const TriangleMesh& mesh, Index half_edge) { return mesh.triangles[half_edge / 3][half_edge % 3]; }
+Index origin(const TriangleMesh& mesh, Index half_edge) {
+  return mesh.triangles[half_edge / 3][half_edge % 3];
+}
 Index target(const TriangleMesh& mesh, Index half_edge) {
   return mesh.triangles[half_edge / 3][(half_edge % 3 + 1) % 3];
 }
 
 void check_indices(const TriangleMesh& mesh) {
   if (mesh.triangles.size() >= (std::size_t(1) << 30))
-    throw CompletionError("reading the mesh", "The mesh has a thousand million triangles or more; split it first.");
+    throw CompletionError("reading the mesh",
+                          "The mesh has a thousand million triangles or more; split it first.");
   const std::size_t count = mesh.vertices.size();
   for (const Triangle& triangle : mesh.triangles)
     for (Index corner : triangle)
       if (corner >= count)
         throw CompletionError("reading the mesh", "A triangle refers to vertex " + std::to_string(corner) +
-                                                      ", but the mesh has only " + std::to_string(count) + ".");
+                                                      ", but the mesh has only " + std::to_string(count) +
+                                                      ".");
 }
 
 bool repeats_a_corner(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-// Half-edges grouped by the smaller end of their edge: bucket v is entries[start[v]] to entries[start[v + 1]].
+// Half-edges grouped by the smaller end of their edge: bucket v is entries[start[v]] to entries[start[v +
+// 1]].
 struct Buckets {
   std::vector<Index> start, entries;
 };

@@ -1,10 +1,11 @@
-// Which faces meet at which edge: the adjacency that boundary tracing and statistics need, built in one linear pass.
+// Which faces meet at which edge: the adjacency that boundary tracing and statistics need, built in one
+// linear pass.
 #pragma once
+
+#include <vector>
 
 #include "common/core/mesh.h"
 #include "common/core/progress.h"
-
-#include <vector>
 
 namespace meshcomplete {
 
@@ -14,16 +15,17 @@ struct MeshTopology {
   static constexpr Index non_manifold = 0xfffffffeu;  ///< the edge has three or more faces
 
   /// For each half-edge the other half-edge at the same undirected edge, or `boundary`, or `non_manifold`.
-  /// The other one runs the opposite way when the two faces are oriented alike, and the same way when they are not.
-  /// (For a degenerate face: a value above that of every half-edge.)
+  /// The other one runs the opposite way when the two faces are oriented alike, and the same way when they
+  /// are not. (For a degenerate face: a value above that of every half-edge.)
   std::vector<Index> opposite;
-  std::vector<Index> boundary_half_edges;  ///< ascending
+  std::vector<Index> boundary_half_edges;      ///< ascending
   std::vector<Index> non_manifold_half_edges;  ///< ascending
-  std::vector<Index> degenerate_faces;     ///< triangles with a repeated corner; their half-edges are left out everywhere
+  std::vector<Index>
+      degenerate_faces;  ///< triangles with a repeated corner; their half-edges are left out everywhere
 };
 
-/// Throws CompletionError when a triangle names a vertex that does not exist, or the mesh has 2^30 triangles or more.
-/// Cost: O(faces), threaded; 4 bytes of scratch per half-edge and 4 per vertex.
+/// Throws CompletionError when a triangle names a vertex that does not exist, or the mesh has 2^30 triangles
+/// or more. Cost: O(faces), threaded; 4 bytes of scratch per half-edge and 4 per vertex.
 MeshTopology build_topology(const TriangleMesh& mesh, const Progress& progress = Progress());
 
 }  // namespace meshcomplete

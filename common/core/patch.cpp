@@ -27,18 +27,21 @@ void append(Patch& patch, const Patch& other) {
 
 const char* name(HoleOutcome outcome) {
   switch (outcome) {
-    case HoleOutcome::closed: return "closed";
-    case HoleOutcome::partial: return "partial";
-    case HoleOutcome::skipped: return "skipped";
-    case HoleOutcome::failed: return "failed";
+    case HoleOutcome::closed:
+      return "closed";
+    case HoleOutcome::partial:
+      return "partial";
+    case HoleOutcome::skipped:
+      return "skipped";
+    case HoleOutcome::failed:
+      return "failed";
   }
   return "";
 }
 
 std::size_t CompletionReport::count(HoleOutcome outcome) const {
-  return static_cast<std::size_t>(std::count_if(holes.begin(), holes.end(), [outcome](const HoleReport& hole) {
-    return hole.outcome == outcome;
-  }));
+  return static_cast<std::size_t>(std::count_if(
+      holes.begin(), holes.end(), [outcome](const HoleReport& hole) { return hole.outcome == outcome; }));
 }
 
 }  // namespace meshcomplete

@@ -1,19 +1,19 @@
 // What every algorithm returns: a patch, and what became of each hole.
 #pragma once
 
-#include "common/core/boundary_loops.h"
-#include "common/core/mesh.h"
-
 #include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/core/boundary_loops.h"
+#include "common/core/mesh.h"
+
 namespace meshcomplete {
 
-/// New vertices and triangles that are added to a mesh of `input_vertices` vertices. A corner below `input_vertices` is
-/// a vertex of the input, any other is `vertices[corner - input_vertices]`. Positions are exactly representable as
-/// floats, because that is how they will be stored.
+/// New vertices and triangles that are added to a mesh of `input_vertices` vertices. A corner below
+/// `input_vertices` is a vertex of the input, any other is `vertices[corner - input_vertices]`. Positions are
+/// exactly representable as floats, because that is how they will be stored.
 struct Patch {
   Index input_vertices = 0;
   std::vector<Vector3> vertices;
@@ -45,11 +45,11 @@ const char* name(HoleOutcome outcome);
 struct HoleReport {
   std::vector<std::size_t> loops;  ///< the boundary loops of this hole, by their position in the traced list
   std::size_t edges = 0;
-  double perimeter = 0;            ///< mesh units
+  double perimeter = 0;              ///< mesh units
   Vector3 centre = Vector3::Zero();  ///< mean of the loop's vertices
   HoleOutcome outcome = HoleOutcome::skipped;
-  std::string route;               ///< which way led to the patch, e.g. "projected, thin plate"
-  std::string reason;              ///< why it was skipped or failed; empty when closed
+  std::string route;   ///< which way led to the patch, e.g. "projected, thin plate"
+  std::string reason;  ///< why it was skipped or failed; empty when closed
   std::size_t vertices_added = 0;
   std::size_t faces_added = 0;
 };
@@ -57,7 +57,8 @@ struct HoleReport {
 /// What a whole run did.
 struct CompletionReport {
   std::vector<HoleReport> holes;
-  std::vector<std::pair<std::string, double>> stage_seconds;  ///< wall seconds per stage, in the order they ran
+  std::vector<std::pair<std::string, double>>
+      stage_seconds;               ///< wall seconds per stage, in the order they ran
   std::vector<std::string> notes;  ///< anything else the user should know
 
   std::size_t count(HoleOutcome outcome) const;

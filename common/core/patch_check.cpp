@@ -90,7 +90,8 @@ class Checker {
 
 PatchCheck Checker::run(const Progress& progress) {
   using Step = void (Checker::*)();
-  // Each step may rely on those before it having found nothing, but for the last one, which follows intersections too.
+  // Each step may rely on those before it having found nothing, but for the last one, which follows
+  // intersections too.
   const std::array<std::pair<Step, double>, 11> steps = {{{&Checker::find_bad_indices, 0.01},
                                                           {&Checker::find_unused_vertices, 0.02},
                                                           {&Checker::find_bad_coordinates, 0.03},

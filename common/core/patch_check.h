@@ -24,12 +24,12 @@ class TriangleBlocks;
 /// stored (float) positions.
 enum class PatchDefect {
   none,
-  bad_index,          ///< a corner that is neither an input vertex nor a new one, or a repeated corner
-  unused_vertex,      ///< a new vertex without a face
-  not_finite,         ///< a coordinate is infinite or not a number, or is not a float
-  rim_not_closed,     ///< a targeted boundary edge without exactly one new face in the right direction
-  edge_not_manifold,  ///< an edge with more than two faces, with one face only, walked twice in one
-                      ///< direction, or inside the patch and yet an edge of the input
+  bad_index,            ///< a corner that is neither an input vertex nor a new one, or a repeated corner
+  unused_vertex,        ///< a new vertex without a face
+  not_finite,           ///< a coordinate is infinite or not a number, or is not a float
+  rim_not_closed,       ///< a targeted boundary edge without exactly one new face in the right direction
+  edge_not_manifold,    ///< an edge with more than two faces, with one face only, walked twice in one
+                        ///< direction, or inside the patch and yet an edge of the input
   vertex_not_manifold,  ///< the new faces round a vertex do not form one fan between rim edges (or one closed
                         ///< fan)
   detached_piece,       ///< a closed piece of the patch that touches no rim
@@ -43,8 +43,9 @@ enum class PatchDefect {
 std::string describe(PatchDefect defect);
 
 /// The first defect found, with the patch triangles that have it (for degenerate faces, coincident vertices
-/// and intersections all of them, so that a caller can mend them; of a patch that meets itself also those that meet
-/// the input) and the input triangles concerned: those that are met, and those at an edge or a position that the patch wants too. Both lists are ascending.
+/// and intersections all of them, so that a caller can mend them; of a patch that meets itself also those
+/// that meet the input) and the input triangles concerned: those that are met, and those at an edge or a
+/// position that the patch wants too. Both lists are ascending.
 struct PatchCheck {
   PatchDefect defect = PatchDefect::none;
   std::vector<Index> patch_triangles;

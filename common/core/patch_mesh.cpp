@@ -1,9 +1,9 @@
 #include "common/core/patch_mesh.h"
 
+#include <algorithm>
+
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
-
-#include <algorithm>
 
 namespace meshcomplete {
 
@@ -20,11 +20,14 @@ void PatchMesh::connect() {
   opposite_.resize(topology.opposite.size());
   half_edge_of_.assign(positions_.size(), none);
   for (Index h = 0; h < opposite_.size(); ++h) {
-    if (topology.opposite[h] == MeshTopology::non_manifold || !topology.degenerate_faces.empty() || inconsistent(h))
-      throw CompletionError("triangulating the patch", "The triangulation of the unfolded rim is not manifold.");
+    if (topology.opposite[h] == MeshTopology::non_manifold || !topology.degenerate_faces.empty() ||
+        inconsistent(h))
+      throw CompletionError("triangulating the patch",
+                            "The triangulation of the unfolded rim is not manifold.");
     opposite_[h] = topology.opposite[h] == MeshTopology::boundary ? none : topology.opposite[h];
   }
-  // On the rim, the half-edge to start a fan at is the one that lies on the boundary: turning goes away from it.
+  // On the rim, the half-edge to start a fan at is the one that lies on the boundary: turning goes away from
+  // it.
   for (Index h = 0; h < opposite_.size(); ++h)
     if (half_edge_of_[origin(h)] == none || opposite_[h] == none) half_edge_of_[origin(h)] = h;
 }
@@ -138,7 +141,8 @@ bool PatchMesh::can_collapse(Index h) const {
   if (g == none || on_rim(origin(h))) return false;
   const Index a = origin(h), b = target(h), c = apex(h), d = apex(g);
   if (c == d) return false;
-  // Link condition: a and b have no common neighbours but c and d; and no triangle is left without a neighbour.
+  // Link condition: a and b have no common neighbours but c and d; and no triangle is left without a
+  // neighbour.
   bool clean = true;
   std::size_t valence_a = 0;
   for_neighbours(a, [&](Index v) {
@@ -146,7 +150,8 @@ bool PatchMesh::can_collapse(Index h) const {
     if (v != b && v != c && v != d && joined(v, b)) clean = false;
   });
   if (!clean || valence_a < 4) return false;
-  // c and d lose a neighbour: inside they need three left, on the rim an edge that is not the boundary is enough.
+  // c and d lose a neighbour: inside they need three left, on the rim an edge that is not the boundary is
+  // enough.
   const auto can_lose_one = [&](Index v) { return valence(v) > (on_rim(v) ? 2u : 3u); };
   const bool side_c_stays = !(is_boundary(next(h)) && is_boundary(previous(h)));
   const bool side_d_stays = !(is_boundary(next(g)) && is_boundary(previous(g)));
@@ -191,8 +196,9 @@ void PatchMesh::compact() {
       positions_[kept++] = positions_[v];
     }
   positions_.resize(kept);
-  triangles_.erase(std::remove_if(triangles_.begin(), triangles_.end(), [](const Triangle& t) { return t[0] == none; }),
-                   triangles_.end());
+  triangles_.erase(
+      std::remove_if(triangles_.begin(), triangles_.end(), [](const Triangle& t) { return t[0] == none; }),
+      triangles_.end());
   for (Triangle& t : triangles_)
     for (Index& corner : t) corner = number[corner];
   connect();

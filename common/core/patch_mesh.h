@@ -1,31 +1,30 @@
 // A triangulated patch that can be edited: edges split, flipped and collapsed, its rim never.
 #pragma once
 
-#include "common/core/mesh.h"
-
 #include <Eigen/Geometry>
-
 #include <cstddef>
 #include <functional>
 #include <vector>
 
+#include "common/core/mesh.h"
+
 namespace meshcomplete {
 
-/// A manifold triangulation with boundary. Vertices 0 to `rim_size() - 1` are the rim: they never move, are never removed,
-/// and the boundary edges between them are never split. Half-edge `3 * t + k` goes from corner k to corner k + 1 of
-/// triangle t. Removed vertices and triangles leave gaps until `compact` is called.
+/// A manifold triangulation with boundary. Vertices 0 to `rim_size() - 1` are the rim: they never move, are
+/// never removed, and the boundary edges between them are never split. Half-edge `3 * t + k` goes from corner
+/// k to corner k + 1 of triangle t. Removed vertices and triangles leave gaps until `compact` is called.
 class PatchMesh {
  public:
   static constexpr Index none = 0xffffffffu;
 
-  /// `triangles` over `positions`, of which the first `rim_size` are the rim; the triangulation must be manifold and
-  /// consistently oriented, else throws CompletionError.
+  /// `triangles` over `positions`, of which the first `rim_size` are the rim; the triangulation must be
+  /// manifold and consistently oriented, else throws CompletionError.
   PatchMesh(std::vector<Vector3> positions, std::size_t rim_size, std::vector<Triangle> triangles);
 
   std::size_t rim_size() const { return rim_size_; }
   bool on_rim(Index vertex) const { return vertex < rim_size_; }
-  std::size_t vertex_count() const { return positions_.size(); }     ///< with gaps
-  std::size_t triangle_count() const { return triangles_.size(); }   ///< with gaps
+  std::size_t vertex_count() const { return positions_.size(); }    ///< with gaps
+  std::size_t triangle_count() const { return triangles_.size(); }  ///< with gaps
   bool alive(Index triangle) const { return triangles_[triangle][0] != none; }
   bool vertex_alive(Index vertex) const { return half_edge_of_[vertex] != none; }
 
@@ -41,12 +40,14 @@ class PatchMesh {
   static Index previous(Index half_edge) { return half_edge % 3 == 0 ? half_edge + 2 : half_edge - 1; }
   Index opposite(Index half_edge) const { return opposite_[half_edge]; }  ///< `none` on the boundary
   bool is_boundary(Index half_edge) const { return opposite_[half_edge] == none; }
-  double length(Index half_edge) const { return (positions_[origin(half_edge)] - positions_[target(half_edge)]).norm(); }
+  double length(Index half_edge) const {
+    return (positions_[origin(half_edge)] - positions_[target(half_edge)]).norm();
+  }
   /// Cross product of two sides: normal times twice the area.
   Vector3 area_normal(Index triangle) const;
 
-  /// Calls `visit` with every half-edge that leaves `vertex`. On the rim the last neighbour, reached only by a half-edge
-  /// that arrives at `vertex`, is not visited: use `for_neighbours`.
+  /// Calls `visit` with every half-edge that leaves `vertex`. On the rim the last neighbour, reached only by
+  /// a half-edge that arrives at `vertex`, is not visited: use `for_neighbours`.
   template <class Visit>
   void for_outgoing(Index vertex, Visit visit) const {
     const Index start = half_edge_of_[vertex];
@@ -70,16 +71,18 @@ class PatchMesh {
     } while (half_edge != none && half_edge != start);
   }
 
-  bool joined(Index a, Index b) const;        ///< whether an edge joins the two vertices
-  std::size_t valence(Index vertex) const;    ///< number of neighbours
+  bool joined(Index a, Index b) const;      ///< whether an edge joins the two vertices
+  std::size_t valence(Index vertex) const;  ///< number of neighbours
 
   /// Inserts a vertex on an inner edge, splitting its two triangles; returns the new vertex.
   Index split(Index half_edge, const Vector3& position);
   /// Inserts a vertex into a triangle, splitting it into three; returns the new vertex.
   Index insert(Index triangle, const Vector3& position);
-  /// Replaces an inner edge by the other diagonal. The caller has made sure that the other diagonal is not an edge yet.
+  /// Replaces an inner edge by the other diagonal. The caller has made sure that the other diagonal is not an
+  /// edge yet.
   void flip(Index half_edge);
-  /// Whether removing the edge by moving its origin, not on the rim, onto its target leaves a manifold (link condition).
+  /// Whether removing the edge by moving its origin, not on the rim, onto its target leaves a manifold (link
+  /// condition).
   bool can_collapse(Index half_edge) const;
   /// Removes the origin of an inner edge and its two triangles. Requires `can_collapse`.
   void collapse(Index half_edge);

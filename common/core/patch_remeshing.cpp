@@ -1,11 +1,11 @@
 #include "common/core/patch_remeshing.h"
 
-#include "common/core/error.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include "common/core/error.h"
 
 namespace meshcomplete {
 namespace {
@@ -63,20 +63,23 @@ class Remesher {
   bool splitting_ = false;
 };
 
-// Sum of the cotangents of a triangle's angles, times four: squared sides over area, infinite for a flat triangle.
+// Sum of the cotangents of a triangle's angles, times four: squared sides over area, infinite for a flat
+// triangle.
 double harmonic_index(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double squares = (a - b).squaredNorm() + (b - c).squaredNorm() + (c - a).squaredNorm();
   const double area = (b - a).cross(c - a).norm();
   return area > 0 ? squares / area : std::numeric_limits<double>::infinity();
 }
 
-// In the plane the Delaunay triangulation has the least sum of harmonic indices (Musin 1997), and every flip towards it
-// lowers the sum. Asking for just that also makes flips end on a bent patch, where the angle criterion may cycle.
+// In the plane the Delaunay triangulation has the least sum of harmonic indices (Musin 1997), and every flip
+// towards it lowers the sum. Asking for just that also makes flips end on a bent patch, where the angle
+// criterion may cycle.
 bool Remesher::wants_flip(Index h) const {
   const Index g = patch_.opposite(h);
   if (g == none) return false;
   const Index a = patch_.origin(h), b = patch_.target(h), c = patch_.apex(h), d = patch_.apex(g);
-  const Vector3 &pa = patch_.position(a), &pb = patch_.position(b), &pc = patch_.position(c), &pd = patch_.position(d);
+  const Vector3 &pa = patch_.position(a), &pb = patch_.position(b), &pc = patch_.position(c),
+                &pd = patch_.position(d);
   // The margin is far above the rounding of the sums and far below any change worth a flip.
   constexpr double margin = 1.0 - 1e-9;
   const double before = harmonic_index(pa, pb, pc) + harmonic_index(pb, pa, pd);
@@ -139,25 +142,28 @@ std::vector<Remesher::LongEdge> Remesher::long_edges() const {
 }
 
 void Remesher::too_many_vertices() const {
-  throw CompletionError("refining the patch", "The patch would need more than " + std::to_string(options_.max_vertices) +
+  throw CompletionError("refining the patch", "The patch would need more than " +
+                                                  std::to_string(options_.max_vertices) +
                                                   " vertices at this edge length; ask for longer edges.");
 }
 
-// Triangles whose sides are all short enough have at most a known area, and there are two of them per vertex: this many
-// vertices are needed at least, and it is better to know before they have been made.
+// Triangles whose sides are all short enough have at most a known area, and there are two of them per vertex:
+// this many vertices are needed at least, and it is better to know before they have been made.
 void Remesher::check_size() const {
   double triangles = 0;
   for (Index t = 0; t < patch_.triangle_count(); ++t) {
     if (!patch_.alive(t)) continue;
     const Triangle& corners = patch_.triangles()[t];
-    const double side = options_.longest * std::max({target_[corners[0]], target_[corners[1]], target_[corners[2]]});
+    const double side =
+        options_.longest * std::max({target_[corners[0]], target_[corners[1]], target_[corners[2]]});
     triangles += 0.5 * patch_.area_normal(t).norm() / (0.25 * std::sqrt(3.0) * side * side);
   }
   if (0.5 * triangles > static_cast<double>(options_.max_vertices)) too_many_vertices();
 }
 
-// In passes, each over the edges that are too long at its start: splitting needles makes new long edges for ever, and
-// the passes are as many as halving the longest edge takes, and as many again for the edges that splits add.
+// In passes, each over the edges that are too long at its start: splitting needles makes new long edges for
+// ever, and the passes are as many as halving the longest edge takes, and as many again for the edges that
+// splits add.
 void Remesher::split_long_edges(const Progress& progress) {
   std::vector<LongEdge> edges = long_edges();
   if (edges.empty()) return;
@@ -223,7 +229,8 @@ void Remesher::smooth_along_surface() {
       const double relative = area.norm() / std::max(target_[v] * target_[v], 1e-300);
       normal += area;
       const Vector3 middle =
-          (patch_.position(v) + patch_.position(patch_.target(out)) + patch_.position(patch_.apex(out))) / 3.0;
+          (patch_.position(v) + patch_.position(patch_.target(out)) + patch_.position(patch_.apex(out))) /
+          3.0;
       centre += relative * middle;
       weight += relative;
       size += target_[patch_.target(out)];
@@ -243,7 +250,8 @@ void Remesher::smooth_along_surface() {
 void Remesher::split_forbidden() {
   const Index half_edges = static_cast<Index>(3 * patch_.triangle_count());
   for (Index h = 0; h < half_edges; ++h)
-    if (patch_.alive(h / 3) && !patch_.is_boundary(h) && forbidden(patch_.origin(h), patch_.target(h))) split(h);
+    if (patch_.alive(h / 3) && !patch_.is_boundary(h) && forbidden(patch_.origin(h), patch_.target(h)))
+      split(h);
 }
 
 void Remesher::compact() {
@@ -263,7 +271,8 @@ bool can_flip(const PatchMesh& patch, Index h, const ForbiddenEdges& forbidden) 
   return c != d && !patch.joined(c, d) && !std::binary_search(forbidden.begin(), forbidden.end(), pair);
 }
 
-void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options, const Progress& progress) {
+void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options,
+            const Progress& progress) {
   Remesher remesher(patch, target, options);
   remesher.flip_all();
   remesher.check_size();
@@ -271,7 +280,8 @@ void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& 
   remesher.split_forbidden();
 }
 
-void remesh(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options, const Progress& progress) {
+void remesh(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options,
+            const Progress& progress) {
   Remesher remesher(patch, target, options);
   for (int round = 0; round < options.rounds; ++round) {
     remesher.split_long_edges(progress);

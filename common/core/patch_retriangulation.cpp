@@ -1,18 +1,17 @@
 #include "common/core/patch_retriangulation.h"
 
-#include "common/core/patch.h"
-#include "common/core/patch_remeshing.h"
-#include "common/core/patch_surroundings.h"
-#include "common/core/triangle_intersection.h"
-
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
+
+#include "common/core/patch.h"
+#include "common/core/patch_remeshing.h"
+#include "common/core/patch_surroundings.h"
+#include "common/core/triangle_intersection.h"
 
 namespace meshcomplete {
 namespace {
@@ -24,14 +23,16 @@ constexpr Index none = PatchMesh::none;
 // Gaps with more corners take too long.
 constexpr std::size_t most_corners = 60;
 
-// A crease is measured as one minus the cosine of the angle between two normals. Up to 60 degrees it is slight: short
-// edges matter more then.
+// A crease is measured as one minus the cosine of the angle between two normals. Up to 60 degrees it is
+// slight: short edges matter more then.
 constexpr double slight_crease = 0.5;
 
-// How often triangles of one triangulation that meet each other are forbidden, one of each pair, before giving up.
+// How often triangles of one triangulation that meet each other are forbidden, one of each pair, before
+// giving up.
 constexpr int most_forbiddings = 12;
 
-// Of a triangulation of part of the gap: its worst crease unless slight, and the sum of its triangles' squared sides.
+// Of a triangulation of part of the gap: its worst crease unless slight, and the sum of its triangles'
+// squared sides.
 struct Cost {
   double crease = 0;
   double squares = 0;
@@ -43,7 +44,8 @@ struct Cost {
 struct Gap {
   std::vector<Index> triangles;  // that are taken out
   std::vector<Index> corners;    // vertices of the patch, in the sense of the triangles
-  std::vector<Vector3> normals;  // unit, beyond the side from each corner to the next; zero where there is nothing
+  std::vector<Vector3>
+      normals;  // unit, beyond the side from each corner to the next; zero where there is nothing
 };
 
 class GapFinder {
@@ -65,7 +67,8 @@ class GapFinder {
   std::optional<Gap> gap(const std::vector<Index>& triangles, const std::vector<char>& inside) const;
 
   const PatchMesh& patch_;
-  std::map<Index, Vector3> rim_normals_;  // of the input's triangles at the rim edges, by the edge's first vertex
+  std::map<Index, Vector3>
+      rim_normals_;  // of the input's triangles at the rim edges, by the edge's first vertex
 };
 
 std::vector<Gap> GapFinder::gaps(const std::vector<Index>& tangled, int rings) const {
@@ -81,7 +84,8 @@ std::vector<Gap> GapFinder::gaps(const std::vector<Index>& tangled, int rings) c
   for (int ring = 0; ring < rings; ++ring) {
     const std::size_t last = triangles.size();
     for (; first < last; ++first)
-      for (Index v : Triangle(patch_.triangles()[triangles[first]])) patch_.for_outgoing(v, [&](Index h) { take(h / 3); });
+      for (Index v : Triangle(patch_.triangles()[triangles[first]]))
+        patch_.for_outgoing(v, [&](Index h) { take(h / 3); });
   }
   // Parts that hang together by edges.
   std::vector<Gap> found;
@@ -102,7 +106,8 @@ std::vector<Gap> GapFinder::gaps(const std::vector<Index>& tangled, int rings) c
   return found;
 }
 
-std::optional<Gap> GapFinder::gap(const std::vector<Index>& triangles, const std::vector<char>& inside) const {
+std::optional<Gap> GapFinder::gap(const std::vector<Index>& triangles,
+                                  const std::vector<char>& inside) const {
   std::map<Index, Index> side_from;  // half-edges round the part
   for (Index t : triangles)
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
@@ -143,7 +148,11 @@ class GapFiller {
  public:
   GapFiller(const PatchMesh& patch, const Gap& gap, const Fillings& before, const ForbiddenEdges& forbidden,
             PatchSurroundings& surroundings)
-      : patch_(patch), gap_(gap), surroundings_(surroundings), n_(gap.corners.size()), allowed_(n_ * n_, 1),
+      : patch_(patch),
+        gap_(gap),
+        surroundings_(surroundings),
+        n_(gap.corners.size()),
+        allowed_(n_ * n_, 1),
         state_(n_ * n_ * n_, unknown) {
     std::vector<char> out = before.gone;
     for (Index t : gap.triangles) out[t] = 1;
@@ -169,7 +178,8 @@ class GapFiller {
   const Vector3& corner(std::size_t i) const { return patch_.position(gap_.corners[i]); }
   Part& part(std::size_t i, std::size_t k) { return parts_[i * n_ + k]; }
   char& state(std::size_t i, std::size_t j, std::size_t k) { return state_[(i * n_ + j) * n_ + k]; }
-  void find_allowed_edges(const std::vector<char>& out, const Fillings& before, const ForbiddenEdges& forbidden);
+  void find_allowed_edges(const std::vector<char>& out, const Fillings& before,
+                          const ForbiddenEdges& forbidden);
   bool is_free(std::size_t i, std::size_t j, std::size_t k);
   bool optimise(const Progress& progress);
   std::vector<std::array<std::size_t, 3>> chosen();
@@ -239,8 +249,8 @@ bool GapFiller::optimise(const Progress& progress) {
         if (!left.possible || !right.possible) continue;
         const Vector3 normal = (corner(j) - corner(i)).cross(corner(k) - corner(i)).stableNormalized();
         Cost cost;
-        cost.crease = std::max({left.cost.crease, right.cost.crease, crease(left.normal, normal),
-                                crease(right.normal, normal)});
+        cost.crease = std::max(
+            {left.cost.crease, right.cost.crease, crease(left.normal, normal), crease(right.normal, normal)});
         if (whole) cost.crease = std::max(cost.crease, crease(gap_.normals[k], normal));
         cost.squares = left.cost.squares + right.cost.squares + (corner(j) - corner(i)).squaredNorm() +
                        (corner(k) - corner(j)).squaredNorm() + (corner(i) - corner(k)).squaredNorm();
@@ -281,7 +291,8 @@ std::vector<Triangle> GapFiller::fill(const Progress& progress) {
     const auto pairs = improper_pairs(soup);
     if (pairs.empty()) {
       std::vector<Triangle> result;
-      for (const auto& t : triangles) result.push_back({gap_.corners[t[0]], gap_.corners[t[1]], gap_.corners[t[2]]});
+      for (const auto& t : triangles)
+        result.push_back({gap_.corners[t[0]], gap_.corners[t[1]], gap_.corners[t[2]]});
       return result;
     }
     for (const auto& [a, b] : pairs) {
@@ -298,7 +309,10 @@ class GapRefiner {
   /// The gap's triangles are those from `first` to before `last`.
   GapRefiner(PatchMesh& patch, Index first, Index last, const ForbiddenEdges& forbidden,
              const std::vector<double>& wanted, PatchSurroundings& surroundings)
-      : patch_(patch), forbidden_(forbidden), wanted_(wanted), surroundings_(surroundings),
+      : patch_(patch),
+        forbidden_(forbidden),
+        wanted_(wanted),
+        surroundings_(surroundings),
         most_triangles_(most_pieces * (last - first)) {
     for (Index t = first; t < last; ++t) triangles_.push_back(t);
     surroundings.focus(triangles_);
@@ -356,7 +370,8 @@ double GapRefiner::wanted_length(Index vertex) {
   return lengths_[vertex] = count_outside > 0 ? outside / count_outside : all / count;
 }
 
-// Whether the four pieces of the edge's two triangles meet nothing; the middle is not quite on the edge once rounded.
+// Whether the four pieces of the edge's two triangles meet nothing; the middle is not quite on the edge once
+// rounded.
 bool GapRefiner::can_split(Index h, const Vector3& middle) {
   const Index g = patch_.opposite(h);
   const Vector3 &a = patch_.position(patch_.origin(h)), &b = patch_.position(patch_.target(h));
@@ -364,7 +379,8 @@ bool GapRefiner::can_split(Index h, const Vector3& middle) {
   surroundings_.collect_round({h / 3, g / 3}, (middle - 0.5 * (a + b)).norm());
   const std::array<Corners, 4> pieces = {{{a, middle, c}, {middle, b, c}, {b, middle, d}, {middle, a, d}}};
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (collinear(pieces[i][0], pieces[i][1], pieces[i][2]) || surroundings_.met_by(pieces[i], 1) > 0) return false;
+    if (collinear(pieces[i][0], pieces[i][1], pieces[i][2]) || surroundings_.met_by(pieces[i], 1) > 0)
+      return false;
     for (std::size_t k = 0; k < i; ++k)
       if (meet_improperly(pieces[i], pieces[k])) return false;
   }
@@ -407,9 +423,12 @@ double roundness(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 // Flips when the less round triangle becomes rounder and the surface is not creased for it.
 bool GapRefiner::flip(Index h) {
-  if (patch_.is_boundary(h) || !inside(patch_.opposite(h) / 3) || !can_flip(patch_, h, forbidden_)) return false;
-  const Index a = patch_.origin(h), b = patch_.target(h), c = patch_.apex(h), d = patch_.apex(patch_.opposite(h));
-  const Vector3 &pa = patch_.position(a), &pb = patch_.position(b), &pc = patch_.position(c), &pd = patch_.position(d);
+  if (patch_.is_boundary(h) || !inside(patch_.opposite(h) / 3) || !can_flip(patch_, h, forbidden_))
+    return false;
+  const Index a = patch_.origin(h), b = patch_.target(h), c = patch_.apex(h),
+              d = patch_.apex(patch_.opposite(h));
+  const Vector3 &pa = patch_.position(a), &pb = patch_.position(b), &pc = patch_.position(c),
+                &pd = patch_.position(d);
   const double before = std::min(roundness(pa, pb, pc), roundness(pb, pa, pd));
   const double after = std::min(roundness(pc, pd, pb), roundness(pd, pc, pa));
   if (!(after > better * before)) return false;

@@ -1,15 +1,16 @@
 #include "common/core/patch_surroundings.h"
 
-#include "common/core/triangle_intersection.h"
-
 #include <algorithm>
+
+#include "common/core/triangle_intersection.h"
 
 namespace meshcomplete {
 namespace {
 
 using Corners = std::array<Vector3, 3>;
 
-// Of the input only so many triangles are remembered; where there are more, each question goes to the input's own tree.
+// Of the input only so many triangles are remembered; where there are more, each question goes to the input's
+// own tree.
 constexpr std::size_t most_remembered = 2000;
 
 // A box in focus is wider than the triangles by this many times its longest side on each side.
@@ -67,7 +68,8 @@ void PatchSurroundings::focus(const std::vector<Index>& triangles) {
 void PatchSurroundings::collect(const Box& box, const std::function<bool(Index)>& left_out) {
   nearby_.clear();
   const auto remember = [&](const Nearby& one) {
-    if (box.meets(one.box) && !collinear(one.corners[0], one.corners[1], one.corners[2])) nearby_.push_back(one);
+    if (box.meets(one.box) && !collinear(one.corners[0], one.corners[1], one.corners[2]))
+      nearby_.push_back(one);
   };
   const auto look_at = [&](Index t) {
     if (!patch_.alive(t) || left_out(t)) return;

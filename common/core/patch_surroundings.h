@@ -1,10 +1,6 @@
-// What the triangles of a patch must not meet, near a place: the rest of the patch, the input, and other obstacles.
+// What the triangles of a patch must not meet, near a place: the rest of the patch, the input, and other
+// obstacles.
 #pragma once
-
-#include "common/core/box_tree.h"
-#include "common/core/mesh.h"
-#include "common/core/patch_check.h"
-#include "common/core/patch_mesh.h"
 
 #include <array>
 #include <cstddef>
@@ -12,10 +8,15 @@
 #include <limits>
 #include <vector>
 
+#include "common/core/box_tree.h"
+#include "common/core/mesh.h"
+#include "common/core/patch_check.h"
+#include "common/core/patch_mesh.h"
+
 namespace meshcomplete {
 
-/// Counts, exactly, how many triangles a triangle of the patch meets in more than shared corners and sides. Refers to
-/// its arguments, which must outlive it. Not for more than one thread.
+/// Counts, exactly, how many triangles a triangle of the patch meets in more than shared corners and sides.
+/// Refers to its arguments, which must outlive it. Not for more than one thread.
 class PatchSurroundings {
  public:
   PatchSurroundings(const PatchMesh& patch, const InputNeighbourhood& input,
@@ -25,13 +26,13 @@ class PatchSurroundings {
   /// The box of some triangles of the patch.
   Box box_of(const std::vector<Index>& triangles) const;
 
-  /// Makes work near `triangles` cheap: `collect` then looks only through what is near them, and through triangles made
-  /// later. Without it, and for boxes that reach further, all are looked through. To be called again when the patch was
-  /// compacted. Cost: O(patch + obstacles).
+  /// Makes work near `triangles` cheap: `collect` then looks only through what is near them, and through
+  /// triangles made later. Without it, and for boxes that reach further, all are looked through. To be called
+  /// again when the patch was compacted. Cost: O(patch + obstacles).
   void focus(const std::vector<Index>& triangles);
 
-  /// Remembers what meets `box`: triangles of the patch for which `left_out` is false, the input's, and obstacles.
-  /// Cost: O(triangles and obstacles in focus + log faces + triangles found).
+  /// Remembers what meets `box`: triangles of the patch for which `left_out` is false, the input's, and
+  /// obstacles. Cost: O(triangles and obstacles in focus + log faces + triangles found).
   void collect(const Box& box, const std::function<bool(Index)>& left_out);
   /// The same round a star, a few triangles of the patch, whose vertices will move by at most `reach`.
   void collect_round(const std::vector<Index>& star, double reach);

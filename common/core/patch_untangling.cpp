@@ -1,17 +1,17 @@
 #include "common/core/patch_untangling.h"
 
+#include <algorithm>
+
 #include "common/core/patch.h"
 #include "common/core/patch_surroundings.h"
-
-#include <algorithm>
 
 namespace meshcomplete {
 namespace {
 
 using Corners = std::array<Vector3, 3>;
 
-// Distances of the places that are tried, in mean edge lengths at the vertex: near ones first, so that a small disturbance
-// wins over a large one.
+// Distances of the places that are tried, in mean edge lengths at the vertex: near ones first, so that a
+// small disturbance wins over a large one.
 constexpr std::array<double, 7> distances = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};
 
 // Places on the way from the middle of a side of the star to the vertex.
@@ -31,7 +31,10 @@ class Untangler {
  public:
   Untangler(PatchMesh& patch, const InputNeighbourhood& input, const std::vector<Corners>& obstacles,
             const ForbiddenEdges& forbidden)
-      : patch_(patch), forbidden_(forbidden), surroundings_(patch, input, obstacles), directions_(directions()) {
+      : patch_(patch),
+        forbidden_(forbidden),
+        surroundings_(patch, input, obstacles),
+        directions_(directions()) {
     for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
       patch.move(v, as_stored(patch.position(v)));
   }
@@ -67,7 +70,8 @@ std::vector<Index> Untangler::movable_vertices(const std::vector<Index>& tangled
       vertices.push_back(patch_.split(h, as_stored(middle)));
       any = true;
     }
-    // A vertex of its own lets a triangle bulge round what it meets: the last resort, when moving its corners was no help.
+    // A vertex of its own lets a triangle bulge round what it meets: the last resort, when moving its corners
+    // was no help.
     if (!any || rings > 0) {
       const Corners c = surroundings_.corners(t);
       vertices.push_back(patch_.insert(t, as_stored((c[0] + c[1] + c[2]) / 3.0)));
@@ -98,12 +102,14 @@ double Untangler::mean_edge(Index vertex) const {
   return sum / count;
 }
 
-// Where a vertex may go: all round it, and close to the sides of its star, for stars that wrap a curl of the rim.
+// Where a vertex may go: all round it, and close to the sides of its star, for stars that wrap a curl of the
+// rim.
 std::vector<Vector3> Untangler::places(Index vertex, double edge) const {
   std::vector<Vector3> list;
   const Vector3& here = patch_.position(vertex);
   for (double distance : distances)
-    for (const Vector3& direction : directions_) list.push_back(as_stored(here + distance * edge * direction));
+    for (const Vector3& direction : directions_)
+      list.push_back(as_stored(here + distance * edge * direction));
   for (double share : shares_of_the_way)
     for (Index t : star_) {
       const Corners c = surroundings_.corners(t);
@@ -155,8 +161,8 @@ bool Untangler::improve_by_flips(Index triangle) {
 }  // namespace
 
 std::size_t untangle(PatchMesh& patch, const std::vector<Index>& tangled, const InputNeighbourhood& input,
-                     const std::vector<Corners>& obstacles, const ForbiddenEdges& forbidden, int rings, int rounds,
-                     const Progress& progress) {
+                     const std::vector<Corners>& obstacles, const ForbiddenEdges& forbidden, int rings,
+                     int rounds, const Progress& progress) {
   Untangler untangler(patch, input, obstacles, forbidden);
   const std::vector<Index> vertices = untangler.movable_vertices(tangled, rings);
   std::size_t moved = 0;

@@ -1,10 +1,10 @@
 #include "common/core/rim.h"
 
-#include "common/core/triangle_blocks.h"
-#include "common/core/triangle_intersection.h"
-
 #include <algorithm>
 #include <unordered_map>
+
+#include "common/core/triangle_blocks.h"
+#include "common/core/triangle_intersection.h"
 
 namespace meshcomplete {
 namespace {
@@ -27,7 +27,8 @@ void turn(const TriangleMesh& mesh, const MeshTopology& topology, Index pivot, I
   }
 }
 
-std::vector<Index> ring_faces(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop) {
+std::vector<Index> ring_faces(const TriangleMesh& mesh, const MeshTopology& topology,
+                              const BoundaryLoop& loop) {
   std::vector<Index> faces;
   const std::size_t n = loop.vertices.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -42,7 +43,8 @@ void smooth_cyclic(std::vector<double>& values) {
   const std::size_t n = values.size();
   for (int round = 0; round < length_smoothing_rounds; ++round) {
     const std::vector<double> old = values;
-    for (std::size_t i = 0; i < n; ++i) values[i] = 0.25 * old[(i + n - 1) % n] + 0.5 * old[i] + 0.25 * old[(i + 1) % n];
+    for (std::size_t i = 0; i < n; ++i)
+      values[i] = 0.25 * old[(i + n - 1) % n] + 0.5 * old[i] + 0.25 * old[(i + 1) % n];
   }
 }
 
@@ -67,7 +69,8 @@ std::vector<Index> obstructed_edges(const InputNeighbourhood& input, const Bound
   const std::vector<Vector3>& vertices = input.mesh().vertices;
   std::vector<Index> edges;
   for (Index i = 0; i < loop.vertices.size(); ++i)
-    if (is_obstructed(input, vertices[loop.vertices[i]], vertices[loop.vertices[(i + 1) % loop.vertices.size()]]))
+    if (is_obstructed(input, vertices[loop.vertices[i]],
+                      vertices[loop.vertices[(i + 1) % loop.vertices.size()]]))
       edges.push_back(i);
   return edges;
 }

@@ -18,8 +18,8 @@ bool collinear(const Vector3& a, const Vector3& b, const Vector3& c);
 /// their positions are equal. Touching counts as meeting. Neither triangle may be degenerate. Exact.
 bool meet_improperly(const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b);
 
-/// Whether the closed segment from `a` to `b` and the closed triangle have a point in common. Exact. The triangle may
-/// not be degenerate.
+/// Whether the closed segment from `a` to `b` and the closed triangle have a point in common. Exact. The
+/// triangle may not be degenerate.
 bool segment_meets_triangle(const Vector3& a, const Vector3& b, const std::array<Vector3, 3>& triangle);
 
 /// All improper pairs (i < j, ascending) among `triangles`; degenerate ones and those with a coordinate that

@@ -1,21 +1,22 @@
-// Filters as data: a plugin says what its filters are called, which parameters they take and what they do; the adapter
-// (filter_plugin.h) turns that into the virtual functions of the MeshLab release at hand, the runner prints it for
-// `--describe`, and the documentation is made from it. No MeshLab type appears here except the document's name.
+// Filters as data: a plugin says what its filters are called, which parameters they take and what they do;
+// the adapter (filter_plugin.h) turns that into the virtual functions of the MeshLab release at hand, the
+// runner prints it for
+// `--describe`, and the documentation is made from it. No MeshLab type appears here except the document's
+// name.
 #pragma once
-
-#include "common/core/patch.h"
-#include "common/core/progress.h"
 
 #include <QString>
 #include <QStringList>
 #include <QVariant>
 #include <QtPlugin>
-
 #include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "common/core/patch.h"
+#include "common/core/progress.h"
 
 class MeshDocument;
 
@@ -26,10 +27,11 @@ enum class ParameterType {
   boolean,
   integer,
   real,
-  length,     ///< a length in mesh units that the dialog also offers as a percentage of the bounding-box diagonal
-  choice,     ///< one of `choices`; the value is its position
+  length,  ///< a length in mesh units that the dialog also offers as a percentage of the bounding-box
+           ///< diagonal
+  choice,  ///< one of `choices`; the value is its position
   text,
-  layer,      ///< another mesh of the document
+  layer,  ///< another mesh of the document
   open_file,
   save_file,
 };
@@ -37,12 +39,13 @@ enum class ParameterType {
 /// One parameter: declared once, used by the dialog, the runner and the documentation.
 struct ParameterDeclaration {
   ParameterType type = ParameterType::boolean;
-  QString name;      ///< in scripts, e.g. "MaxHoleEdges"
-  QString label;     ///< in the dialog
-  QString meaning;   ///< the tooltip: what it does, for a MeshLab user
-  QString unit;      ///< "edges", "mesh units", ...; empty when it has none
-  QVariant fallback; ///< the default where it does not depend on the mesh
-  /// The default where it does (a selection, an edge length, the bounding box); may be empty. The document may hold no mesh.
+  QString name;       ///< in scripts, e.g. "MaxHoleEdges"
+  QString label;      ///< in the dialog
+  QString meaning;    ///< the tooltip: what it does, for a MeshLab user
+  QString unit;       ///< "edges", "mesh units", ...; empty when it has none
+  QVariant fallback;  ///< the default where it does not depend on the mesh
+  /// The default where it does (a selection, an edge length, the bounding box); may be empty. The document
+  /// may hold no mesh.
   std::function<QVariant(const MeshDocument&)> document_default;
   QString default_in_words;  ///< for --describe and the documentation, when document_default is set
   double minimum = -std::numeric_limits<double>::infinity();  ///< allowed values, inclusive
@@ -56,27 +59,33 @@ class ParameterValues {
   virtual ~ParameterValues() = default;
   virtual bool boolean(const char* name) const = 0;
   virtual int integer(const char* name) const = 0;
-  virtual double real(const char* name) const = 0;    ///< also for `length`, in mesh units
+  virtual double real(const char* name) const = 0;  ///< also for `length`, in mesh units
   virtual int choice(const char* name) const = 0;
-  virtual QString text(const char* name) const = 0;   ///< also for files
+  virtual QString text(const char* name) const = 0;  ///< also for files
 };
 
-/// What a filter is given when it runs. It may throw anything: the adapter turns it into MeshLab's way of failing.
+/// What a filter is given when it runs. It may throw anything: the adapter turns it into MeshLab's way of
+/// failing.
 struct FilterRun {
   MeshDocument& document;
   const ParameterValues& parameters;
   Progress progress;
   std::function<void(const QString&)> log;
-  CompletionReport& report;  ///< filled by the filter; the runner writes it as JSON and derives its exit code from it
+  CompletionReport&
+      report;  ///< filled by the filter; the runner writes it as JSON and derives its exit code from it
 };
 
-enum class MenuPlace { remeshing, range_map, quality };  ///< "Remeshing, Simplification and Reconstruction", "Range Map", "Quality Measure and Computations"
+enum class MenuPlace {
+  remeshing,
+  range_map,
+  quality
+};  ///< "Remeshing, Simplification and Reconstruction", "Range Map", "Quality Measure and Computations"
 enum class Arity { one_mesh, visible_meshes, no_mesh };
 
 struct FilterDeclaration {
-  QString name;          ///< in the menu and in scripts
-  QString python_name;   ///< for later MeshLab releases
-  QString description;   ///< MeshLab's style: HTML, ends with the citation
+  QString name;         ///< in the menu and in scripts
+  QString python_name;  ///< for later MeshLab releases
+  QString description;  ///< MeshLab's style: HTML, ends with the citation
   MenuPlace place = MenuPlace::remeshing;
   Arity arity = Arity::one_mesh;
   std::vector<ParameterDeclaration> parameters;
@@ -84,8 +93,8 @@ struct FilterDeclaration {
   bool changes_mesh = true;  ///< false for filters that only report: MeshLab then redraws nothing
 };
 
-/// Implemented by every plugin of the suite, beside MeshLab's own interface, so that the runner can ask for what
-/// MeshLab's interface cannot say: ranges and units before a run, the report after it.
+/// Implemented by every plugin of the suite, beside MeshLab's own interface, so that the runner can ask for
+/// what MeshLab's interface cannot say: ranges and units before a run, the report after it.
 class DeclaredFilters {
  public:
   virtual ~DeclaredFilters() = default;

@@ -16,7 +16,8 @@ PatchMesh polygon_fan(std::size_t n) {
   std::vector<Vector3> positions;
   std::vector<Triangle> triangles;
   for (std::size_t i = 0; i < n; ++i)
-    positions.emplace_back(std::cos(2 * pi * double(i) / double(n)), std::sin(2 * pi * double(i) / double(n)), 0.0);
+    positions.emplace_back(std::cos(2 * pi * double(i) / double(n)), std::sin(2 * pi * double(i) / double(n)),
+                           0.0);
   for (Index i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
   return PatchMesh(positions, n, triangles);
 }
@@ -30,7 +31,8 @@ void expect_consistent(const PatchMesh& mesh) {
     if (!mesh.alive(t)) continue;
     ++triangles;
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
-      ASSERT_TRUE(half_edges.emplace(std::pair(mesh.origin(h), mesh.target(h)), h).second) << "edge walked twice";
+      ASSERT_TRUE(half_edges.emplace(std::pair(mesh.origin(h), mesh.target(h)), h).second)
+          << "edge walked twice";
       neighbours[mesh.origin(h)].insert(mesh.target(h));
       neighbours[mesh.target(h)].insert(mesh.origin(h));
     }
@@ -60,7 +62,9 @@ void expect_consistent(const PatchMesh& mesh) {
     ASSERT_EQ(visits, seen.size());
     ASSERT_EQ(seen, neighbours[v]);
   }
-  ASSERT_EQ(static_cast<long>(alive) - static_cast<long>(half_edges.size() + boundary) / 2 + static_cast<long>(triangles), 1)
+  ASSERT_EQ(static_cast<long>(alive) - static_cast<long>(half_edges.size() + boundary) / 2 +
+                static_cast<long>(triangles),
+            1)
       << "no longer a disk";
 }
 
@@ -119,9 +123,14 @@ TEST(PatchMesh, RefusesACollapseThatWouldPinch) {
   PatchMesh mesh(positions, 4, {{0, 1, 5}, {1, 2, 5}, {2, 4, 5}, {0, 5, 4}, {2, 3, 4}, {3, 0, 4}});
   for (Index h = 0; h < 18; ++h) {
     if (mesh.is_boundary(h)) continue;
-    // Pulling an inner vertex onto the rim vertex 0 or 2 would double the edge to the other inner vertex's fan.
-    if (mesh.origin(h) == 4 && mesh.target(h) == 5) EXPECT_TRUE(mesh.can_collapse(h));
-    if (mesh.on_rim(mesh.origin(h))) EXPECT_FALSE(mesh.can_collapse(h)) << "the rim is never removed";
+    // Pulling an inner vertex onto the rim vertex 0 or 2 would double the edge to the other inner vertex's
+    // fan.
+    if (mesh.origin(h) == 4 && mesh.target(h) == 5) {
+      EXPECT_TRUE(mesh.can_collapse(h));
+    }
+    if (mesh.on_rim(mesh.origin(h))) {
+      EXPECT_FALSE(mesh.can_collapse(h)) << "the rim is never removed";
+    }
   }
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -136,7 +135,8 @@ TEST_F(PatchRetriangulation, SlantedGapsStayClean) {
   slanted.for_outgoing(poked, [&](Index h) { star.push_back(h / 3); });
   const TriangleMesh nothing;
   const InputNeighbourhood input(nothing);
-  ASSERT_EQ(retriangulate(slanted, star, rim_, std::vector<double>(rim_.positions.size(), 0.3), input, {}, 2), 1u);
+  ASSERT_EQ(retriangulate(slanted, star, rim_, std::vector<double>(rim_.positions.size(), 0.3), input, {}, 2),
+            1u);
   std::vector<Corners> triangles;
   for (const Triangle& t : slanted.triangles())
     triangles.push_back({slanted.position(t[0]), slanted.position(t[1]), slanted.position(t[2])});
@@ -144,12 +144,14 @@ TEST_F(PatchRetriangulation, SlantedGapsStayClean) {
   for (const Corners& c : triangles) EXPECT_FALSE(collinear(c[0], c[1], c[2]));
 }
 
-/// Four corners that are not in one plane, closed along the diagonal from 0 to 2, and a bar across that diagonal and below
-/// the other one.
+/// Four corners that are not in one plane, closed along the diagonal from 0 to 2, and a bar across that
+/// diagonal and below the other one.
 class PatchRetriangulationOfAQuad : public ::testing::Test {
  protected:
   PatchRetriangulationOfAQuad() { rim_.positions = positions_; }
-  std::size_t mend() { return retriangulate(patch_, {0}, rim_, {1, 1, 1, 1}, InputNeighbourhood(nothing_), bar_, 1); }
+  std::size_t mend() {
+    return retriangulate(patch_, {0}, rim_, {1, 1, 1, 1}, InputNeighbourhood(nothing_), bar_, 1);
+  }
 
   const std::vector<Vector3> positions_ = {{0, 0, 0}, {4, 0, 1}, {4, 4, 0}, {0, 4, 1}};
   const std::vector<Corners> bar_ = {{Vector3(1, 3, 0.2), Vector3(3, 1, 0.2), Vector3(2.1, 2.1, -0.5)}};

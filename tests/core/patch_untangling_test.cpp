@@ -38,7 +38,6 @@ class PatchUntangling : public test::BoxWithLid {
       EXPECT_EQ(patch_.position(v), as_stored(patch_.position(v))) << "what will be stored";
     }
   }
-
 };
 
 TEST_F(PatchUntangling, TheLidIsCleanAtFirst) {

@@ -426,7 +426,8 @@ TEST(CurveUnfolding, CanBeCancelledAtAnyTime) {
     int call = 0;
     bool cancelled = false;
     try {
-      fill_by_curve_unfolding(mesh, {}, {}, Progress([&](double, const std::string&) { return ++call < stop; }));
+      fill_by_curve_unfolding(mesh, {}, {},
+                              Progress([&](double, const std::string&) { return ++call < stop; }));
     } catch (const Cancelled&) {
       cancelled = true;
     }

@@ -46,7 +46,8 @@ std::vector<Vector3> dumbbell(int points) {
 std::vector<std::array<Vector3, 3>> corners_of(const PatchMesh& patch) {
   std::vector<std::array<Vector3, 3>> list;
   for (const Triangle& t : patch.triangles())
-    list.push_back({as_stored(patch.position(t[0])), as_stored(patch.position(t[1])), as_stored(patch.position(t[2]))});
+    list.push_back(
+        {as_stored(patch.position(t[0])), as_stored(patch.position(t[1])), as_stored(patch.position(t[2]))});
   return list;
 }
 
@@ -69,7 +70,8 @@ TEST(DividedRim, NoChordThroughAFaceOfTheInput) {
   const Vector3 middle = 0.5 * (free.rim.positions[first.first] + free.rim.positions[first.second]);
   TriangleMesh wall = free.mesh;
   const Index v = static_cast<Index>(wall.vertices.size());
-  for (const Vector3& p : {Vector3(-3, 0, -1), Vector3(3, 0, -1), Vector3(0, 0, 4)}) wall.vertices.push_back(middle + p);
+  for (const Vector3& p : {Vector3(-3, 0, -1), Vector3(3, 0, -1), Vector3(0, 0, 4)})
+    wall.vertices.push_back(middle + p);
   wall.triangles.push_back({v, v + 1, v + 2});
   const InputNeighbourhood input(wall);
   const std::vector<Chord> best = chords(free.rim, input, 4);
@@ -130,7 +132,8 @@ TEST(DividedRim, TheEdgeLengthHoldsForTheChordToo) {
 
 // Two knots, one on each side of the chord.
 TEST(DividedRim, ASideThatDoesNotUnfoldIsAnError) {
-  const std::vector<Vector3> loop = testing::connected_sum(testing::torus_knot(60, 2, 3), testing::torus_knot(60, 2, 3));
+  const std::vector<Vector3> loop =
+      testing::connected_sum(testing::torus_knot(60, 2, 3), testing::torus_knot(60, 2, 3));
   const Collar collar(loop, 1.01);
   try {
     divide(collar.rim, {60, static_cast<Index>(loop.size()) - 1}, collar.input, {}, 0);

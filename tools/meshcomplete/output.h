@@ -24,8 +24,8 @@ class OutputSet {
   void commit();
   /// Removes what was written and not moved. Also for another thread, while this object's owner is writing.
   static void discard_all();
-  /// The same for a process that is about to end: from then on nobody can make another hidden folder, and a thread
-  /// that tries waits for the end.
+  /// The same for a process that is about to end: from then on nobody can make another hidden folder, and a
+  /// thread that tries waits for the end.
   static void discard_for_good();
 
  private:
