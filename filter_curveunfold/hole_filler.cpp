@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include "common/core/error.h"
@@ -78,6 +79,10 @@ enum class Way { asked, descended, stretched, divided };
 // How many chords are tried, and how often their sides are divided again.
 constexpr std::size_t most_chords = 4;
 constexpr int divisions = 2;
+
+// What is in the way of a patch is called a piece of its own up to this size; larger ones are not searched to
+// their end.
+constexpr std::size_t most_faces_of_a_piece = 20000;
 
 // One way to close the hole.
 struct Try {
@@ -179,6 +184,7 @@ class HoleFiller {
   std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
   Patch as_patch(const PatchMesh& embedded) const;
   std::string route(const Try& plan, int count) const;
+  std::size_t piece_in_the_way() const;
 
   const HoleFillerContext& context_;
   const BoundaryLoop& loop_;
@@ -197,6 +203,7 @@ class HoleFiller {
   int untanglings_ = 0;
   bool hopeless_ = false;       // with the flat triangulation at hand
   std::size_t triangles_ = 0;   // of the last patch that was embedded at the resolution asked for
+  std::vector<Index> met_;      // triangles of the input that the last patch to meet any of them met
   std::vector<double> wanted_;  // edge lengths, per vertex of the rim
 };
 
@@ -313,6 +320,7 @@ std::vector<Index> HoleFiller::tangled_triangles(const Patch& patch, std::string
   PatchCheck check = check_patch(context_.neighbourhood, patch, {&loop_}, progress_);
   defect = check.passed() ? std::string() : describe(check.defect);
   if (!check.passed() && !can_be_mended(check.defect)) check.patch_triangles.clear();
+  if (check.defect == PatchDefect::meets_input) met_ = std::move(check.input_triangles);
   if (defect.empty() && !obstacles_.empty()) {
     std::vector<std::array<Vector3, 3>> triangles;
     for (const Triangle& t : patch.triangles) triangles.push_back(corners(context_.mesh, patch, t));
@@ -419,6 +427,26 @@ std::string HoleFiller::route(const Try& plan, int count) const {
   return route;
 }
 
+// The number of faces of a small piece of the mesh that patches met and that is not the rim's own; 0 when
+// there is none.
+std::size_t HoleFiller::piece_in_the_way() const {
+  std::unordered_set<Index> seen;
+  for (Index start : met_) {
+    if (!seen.insert(start).second) continue;
+    std::vector<Index> piece = {start};
+    bool own = false;
+    for (std::size_t i = 0; i < piece.size() && piece.size() <= most_faces_of_a_piece && !own; ++i) {
+      own = std::find(loop_.faces.begin(), loop_.faces.end(), piece[i]) != loop_.faces.end();
+      for (Index h = 3 * piece[i]; h < 3 * piece[i] + 3; ++h) {
+        const Index other = context_.topology.opposite[h];
+        if (other < MeshTopology::non_manifold && seen.insert(other / 3).second) piece.push_back(other / 3);
+      }
+    }
+    if (!own && piece.size() <= most_faces_of_a_piece) return piece.size();
+  }
+  return 0;
+}
+
 FilledHole HoleFiller::fill() {
   const std::size_t obstructed = obstructed_edges(context_.neighbourhood, loop_).size();
   if (obstructed > 0) {
@@ -452,6 +480,11 @@ FilledHole HoleFiller::fill() {
     }
     if (result_.reason.empty()) result_.reason = defect;
   }
+  if (result_.patch.empty() && result_.reason == describe(PatchDefect::meets_input))
+    if (const std::size_t faces = piece_in_the_way())
+      result_.reason += "; a piece of " + std::to_string(faces) +
+                        (faces == 1 ? " face that is" : " faces that are") +
+                        " not connected to this rim is in the way: delete or move it first";
   return std::move(result_);
 }
 
