@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <tuple>
-#include <unordered_set>
 #include <utility>
 
 #include "common/core/error.h"
@@ -184,7 +183,6 @@ class HoleFiller {
   std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
   Patch as_patch(const PatchMesh& embedded) const;
   std::string route(const Try& plan, int count) const;
-  std::size_t piece_in_the_way() const;
 
   const HoleFillerContext& context_;
   const BoundaryLoop& loop_;
@@ -427,26 +425,6 @@ std::string HoleFiller::route(const Try& plan, int count) const {
   return route;
 }
 
-// The number of faces of a small piece of the mesh that patches met and that is not the rim's own; 0 when
-// there is none.
-std::size_t HoleFiller::piece_in_the_way() const {
-  std::unordered_set<Index> seen;
-  for (Index start : met_) {
-    if (!seen.insert(start).second) continue;
-    std::vector<Index> piece = {start};
-    bool own = false;
-    for (std::size_t i = 0; i < piece.size() && piece.size() <= most_faces_of_a_piece && !own; ++i) {
-      own = std::find(loop_.faces.begin(), loop_.faces.end(), piece[i]) != loop_.faces.end();
-      for (Index h = 3 * piece[i]; h < 3 * piece[i] + 3; ++h) {
-        const Index other = context_.topology.opposite[h];
-        if (other < MeshTopology::non_manifold && seen.insert(other / 3).second) piece.push_back(other / 3);
-      }
-    }
-    if (!own && piece.size() <= most_faces_of_a_piece) return piece.size();
-  }
-  return 0;
-}
-
 FilledHole HoleFiller::fill() {
   const std::size_t obstructed = obstructed_edges(context_.neighbourhood, loop_).size();
   if (obstructed > 0) {
@@ -481,7 +459,7 @@ FilledHole HoleFiller::fill() {
     if (result_.reason.empty()) result_.reason = defect;
   }
   if (result_.patch.empty() && result_.reason == describe(PatchDefect::meets_input))
-    if (const std::size_t faces = piece_in_the_way())
+    if (const std::size_t faces = separate_piece(context_.topology, met_, loop_.faces, most_faces_of_a_piece))
       result_.reason += "; a piece of " + std::to_string(faces) +
                         (faces == 1 ? " face that is" : " faces that are") +
                         " not connected to this rim is in the way: delete or move it first";

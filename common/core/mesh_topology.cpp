@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <unordered_set>
 
 #include "common/core/error.h"
 
@@ -106,6 +107,32 @@ MeshTopology build_topology(const TriangleMesh& mesh, const Progress& progress) 
   }
   progress.update(1.0);
   return topology;
+}
+
+std::size_t separate_piece(const MeshTopology& topology, const std::vector<Index>& starts,
+                           const std::vector<Index>& others, std::size_t limit) {
+  // Faces of which it is known that they are not part of such a piece; a flood that comes to one is none
+  // either.
+  std::unordered_set<Index> attached(others.begin(), others.end());
+  for (Index start : starts) {
+    if (attached.count(start) > 0) continue;
+    std::vector<Index> piece = {start};
+    std::unordered_set<Index> seen = {start};
+    bool separate = true;
+    for (std::size_t i = 0; i < piece.size() && separate && piece.size() <= limit; ++i)
+      for (Index h = 3 * piece[i]; h < 3 * piece[i] + 3; ++h) {
+        const Index other = topology.opposite[h];
+        if (other == MeshTopology::boundary) continue;
+        // Beyond all half-edges: not manifold, or a degenerate face.
+        if (other >= topology.opposite.size() || attached.count(other / 3) > 0)
+          separate = false;
+        else if (seen.insert(other / 3).second)
+          piece.push_back(other / 3);
+      }
+    if (separate && piece.size() <= limit) return piece.size();
+    attached.insert(piece.begin(), piece.end());
+  }
+  return 0;
 }
 
 }  // namespace meshcomplete

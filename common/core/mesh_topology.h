@@ -2,6 +2,7 @@
 // linear pass.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "common/core/mesh.h"
@@ -27,5 +28,11 @@ struct MeshTopology {
 /// Throws CompletionError when a triangle names a vertex that does not exist, or the mesh has 2^30 triangles
 /// or more. Cost: O(faces), threaded; 4 bytes of scratch per half-edge and 4 per vertex.
 MeshTopology build_topology(const TriangleMesh& mesh, const Progress& progress = Progress());
+
+/// The number of faces of a piece of the mesh (connected by edges) that holds one of the faces `starts` and
+/// none of `others`, and has at most `limit` faces; 0 when there is no such piece. What ends at a
+/// non-manifold edge is no piece of its own. Cost: O(`limit`) for every start.
+std::size_t separate_piece(const MeshTopology& topology, const std::vector<Index>& starts,
+                           const std::vector<Index>& others, std::size_t limit);
 
 }  // namespace meshcomplete

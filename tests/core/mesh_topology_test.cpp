@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <vector>
 
 #include "common/core/error.h"
@@ -105,6 +106,84 @@ TEST(MeshTopology, CornerOutOfRange) {
 TEST(MeshTopology, CanBeCancelled) {
   EXPECT_THROW(build_topology(test::cube(), Progress([](double, const std::string&) { return false; })),
                Cancelled);
+}
+
+// --- separate pieces
+// --------------------------------------------------------------------------------------------------
+
+std::vector<Index> faces_from_to(Index first, Index last) {
+  std::vector<Index> list;
+  for (Index f = first; f < last; ++f) list.push_back(f);
+  return list;
+}
+
+/// A sphere with a hole, and eight faces of a sheet far from it.
+class SeparatePiece : public ::testing::Test {
+ protected:
+  static constexpr std::size_t no_limit = 1000000;
+  SeparatePiece()
+      : sphere_(test::sphere_with_hole(2)),
+        mesh_(test::join(sphere_, test::translated(test::flat_grid(2, 2), Vector3(0, 0, 3)))),
+        topology_(build_topology(mesh_)),
+        size_(static_cast<Index>(sphere_.triangles.size())) {
+    for (Index h : topology_.boundary_half_edges)
+      if (h / 3 < size_) rim_.push_back(h / 3);
+  }
+  std::size_t found(const std::vector<Index>& starts, std::size_t limit = no_limit) const {
+    return separate_piece(topology_, starts, rim_, limit);
+  }
+
+  const TriangleMesh sphere_;
+  const TriangleMesh mesh_;
+  const MeshTopology topology_;
+  const Index size_;        // faces of the sphere
+  std::vector<Index> rim_;  // faces at its hole
+};
+
+// A flood may end at faces that an earlier one came to: they are no border.
+TEST_F(SeparatePiece, NoneAmongWhatIsJoined) {
+  std::vector<Index> starts = faces_from_to(0, size_);
+  std::mt19937 random(1);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(found(starts), 0u);
+    EXPECT_EQ(found(starts, 5), 0u) << "too large, and no part of it a piece either";
+    std::shuffle(starts.begin(), starts.end(), random);
+  }
+  EXPECT_EQ(found({}), 0u);
+}
+
+TEST_F(SeparatePiece, ThePieceIsCounted) {
+  for (Index f = size_; f < size_ + 8; ++f) {
+    EXPECT_EQ(found({f}), 8u);
+    EXPECT_EQ(found({0, f}), 8u) << "after a face that is joined";
+    EXPECT_EQ(found({rim_[0], f, 0}), 8u);
+  }
+  EXPECT_EQ(separate_piece(topology_, {size_}, {}, no_limit), 8u);
+  EXPECT_EQ(separate_piece(topology_, {0}, {size_}, no_limit), size_) << "the sphere is none of the sheet's";
+}
+
+TEST_F(SeparatePiece, UpToTheLimit) {
+  for (Index f = size_; f < size_ + 8; ++f) {
+    EXPECT_EQ(found({f}, 8), 8u);
+    EXPECT_EQ(found({f}, 7), 0u);
+  }
+}
+
+TEST(SeparatePieceElsewhere, WhatEndsAtANonManifoldEdgeIsNone) {
+  const TriangleMesh mesh = test::sphere_with_hole_and_fin();
+  const MeshTopology topology = build_topology(mesh);
+  ASSERT_EQ(topology.non_manifold_half_edges.size(), 3u);
+  const Index fin = static_cast<Index>(mesh.triangles.size() - 1);
+  EXPECT_EQ(separate_piece(topology, {fin}, {0}, mesh.triangles.size()), 0u);
+  EXPECT_EQ(separate_piece(topology, {fin, 1, fin - 1}, {}, mesh.triangles.size()), 0u);
+}
+
+TEST(SeparatePieceElsewhere, ADegenerateFaceIsNone) {
+  TriangleMesh mesh = test::join(test::cube(), test::isolated_triangle());
+  mesh.triangles.push_back({2, 2, 5});
+  const MeshTopology topology = build_topology(mesh);
+  EXPECT_EQ(separate_piece(topology, {13}, {0}, 100), 0u);
+  EXPECT_EQ(separate_piece(topology, {13, 12}, {0}, 100), 1u) << "the triangle";
 }
 
 }  // namespace
