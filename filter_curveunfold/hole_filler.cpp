@@ -224,17 +224,15 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   UnfoldOptions options = context_.options.unfolding;
   options.stretch = plan.way == Way::stretched;
   if (plan.way == Way::descended) options.method = UnfoldMethod::descent;
-  Unfolding unfolding = unfold(opened_.rim.positions, options, progress_);
-  result_.times.unfolding += unfolding.seconds;
-  result_.times.restarts += unfolding.restarts;
-  result_.times.steps += unfolding.steps;
-  if (unfolding.polygon.empty()) {
-    unfolding_ = std::move(unfolding);
+  unfolding_ = unfold(opened_.rim.positions, options, progress_);
+  result_.times.unfolding += unfolding_.seconds;
+  result_.times.restarts += unfolding_.restarts;
+  result_.times.steps += unfolding_.steps;
+  if (unfolding_.polygon.empty()) {
     if (result_.reason.empty()) result_.reason = why_not_unfolded(unfolding_);
     return false;
   }
   const auto start = Clock::now();
-  unfolding_ = std::move(unfolding);
   result_.polygon = unfolding_.polygon;
   const double scale = length(opened_.rim.positions) / length(result_.polygon);
   for (Eigen::Vector2d& p : result_.polygon) p *= scale;
@@ -359,7 +357,6 @@ std::string HoleFiller::probe(const Try& plan, EmbeddingOptions options) {
 // Embeds, checks, and mends the patch where it is tangled. Returns the defect that is left, or fills
 // `result_.patch`.
 std::string HoleFiller::attempt(const Try& plan) {
-  auto start = Clock::now();
   EmbeddingOptions options;
   options.energy = plan.energy;
   options.weights = context_.options.weights;
@@ -368,6 +365,7 @@ std::string HoleFiller::attempt(const Try& plan) {
   wanted_ = target_lengths(opened_.rim, options);
   mended_ = false;
   if (std::string defect = probe(plan, options); hopeless_) return defect;
+  auto start = Clock::now();
   PatchMesh embedded = embed_flat(plan, options);
   result_.times.embedding += seconds_since(start);
   if (plan.resolution <= 1) triangles_ = embedded.triangle_count();
