@@ -28,22 +28,6 @@ using meshcomplete::Vector3;
 using Loop = std::vector<Vector3>;
 namespace families = meshcomplete::testing;
 
-const char* name(UnfoldOutcome outcome) {
-  switch (outcome) {
-    case UnfoldOutcome::projected:
-      return "projected";
-    case UnfoldOutcome::annealed:
-      return "annealed";
-    case UnfoldOutcome::untangled:
-      return "untangled";
-    case UnfoldOutcome::knotted:
-      return "knotted";
-    case UnfoldOutcome::not_unfolded:
-      return "not unfolded";
-  }
-  return "";
-}
-
 bool has_fitted_projection(const Loop& loop) { return meshcomplete::simple_projection(loop, 0).has_value(); }
 
 /// The annealing over ten seeds and the default method once, as one line.

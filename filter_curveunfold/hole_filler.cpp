@@ -134,22 +134,6 @@ double length(const Points& points) {
   return sum;
 }
 
-std::string unfolding_name(UnfoldOutcome outcome) {
-  switch (outcome) {
-    case UnfoldOutcome::projected:
-      return "projected";
-    case UnfoldOutcome::annealed:
-      return "annealed";
-    case UnfoldOutcome::untangled:
-      return "untangled";
-    case UnfoldOutcome::knotted:
-      return "knotted";
-    case UnfoldOutcome::not_unfolded:
-      return "not unfolded";
-  }
-  return "";
-}
-
 std::string why_not_unfolded(const Unfolding& unfolding) {
   if (unfolding.outcome == UnfoldOutcome::knotted)
     return "the rim is knotted (determinant " + std::to_string(unfolding.knot_determinant.value_or(0)) +
@@ -412,7 +396,7 @@ bool HoleFiller::mend(PatchMesh& embedded, const std::vector<Index>& tangled, co
 }
 
 std::string HoleFiller::route(const Try& plan, int count) const {
-  std::string route = unfolding_name(unfolding_.outcome);
+  std::string route = name(unfolding_.outcome);
   if (plan.way == Way::stretched) route += " and stretched";
   if (plan.way == Way::divided) route = "divided by a chord";
   if (pinched_) route = "opened where the rim touches itself, " + route;

@@ -115,6 +115,22 @@ void untangle(const Loop& loop, Unfolding& result, const Progress& progress) {
 
 }  // namespace
 
+const char* name(UnfoldOutcome outcome) {
+  switch (outcome) {
+    case UnfoldOutcome::projected:
+      return "projected";
+    case UnfoldOutcome::annealed:
+      return "annealed";
+    case UnfoldOutcome::untangled:
+      return "untangled";
+    case UnfoldOutcome::knotted:
+      return "knotted";
+    case UnfoldOutcome::not_unfolded:
+      return "not unfolded";
+  }
+  return "";
+}
+
 Unfolding unfold(const std::vector<Vector3>& input, const UnfoldOptions& options, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   validate(input);

@@ -28,6 +28,8 @@ enum class UnfoldOutcome {
   not_unfolded,  ///< every try was used up
 };
 
+const char* name(UnfoldOutcome outcome);  ///< "projected", "annealed", and so on
+
 struct UnfoldOptions {
   UnfoldMethod method = UnfoldMethod::automatic;
   int restarts = 100;      ///< annealing runs before giving up, 1 to 10000 (paper: 100)
