@@ -22,9 +22,8 @@ constexpr std::size_t steps_per_level = 60;
 /// successes.
 constexpr std::size_t steps_per_projection = 2;
 
-/// The same for the projections in many other directions, which take as much time as that many steps.
+/// The same for the projections in all directions, which take as much time as that many steps.
 constexpr std::size_t steps_per_wide_projection = 64;
-constexpr int wide_directions = 48;
 
 /// A run ends at this share of the start temperature: nothing is accepted any more that does not lower the
 /// energy.
@@ -122,7 +121,7 @@ std::optional<Polygon> run(const Loop& start, const UnfoldOptions& options, Rand
       widest.folding = std::max(widest.folding, room.folding);
       if (++accepted % steps_per_projection != 0) continue;
       const bool wide = accepted % steps_per_wide_projection == 0;
-      if (std::optional<Polygon> polygon = simple_projection(loop, wide ? wide_directions : 0))
+      if (std::optional<Polygon> polygon = simple_projection(loop, wide ? projection_directions : 0))
         return polygon;
     }
     progress.check();

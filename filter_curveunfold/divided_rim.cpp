@@ -26,9 +26,6 @@ constexpr double most_pieces = 1000;
 constexpr double closeness_to_obstructed = 0.05;
 constexpr std::size_t most_obstructed = 200;
 
-// Directions in which the projection of a side is tried.
-constexpr int projection_directions = 48;
-
 // Two chords are close to each other when both pairs of ends are, by this share of the rim's vertices.
 constexpr double closeness = 0.1;
 

@@ -70,6 +70,9 @@ std::vector<Vector3> half_sphere_directions(int count);
 std::vector<Vector3> fitted_normals(const Loop& loop);
 std::vector<Vector3> spread_normals(const Loop& loop, int directions);
 
+/// As many directions as are worth a try where it matters: about 23 degrees from one to the next.
+constexpr int projection_directions = 48;
+
 /// A simple projection of the loop, counter-clockwise. The best-fitting plane and the plane with the greatest
 /// projected area first, then `directions` others, each time those first that shorten the edges least; the
 /// first simple projection is taken.

@@ -15,9 +15,6 @@
 namespace meshcomplete {
 namespace {
 
-/// Directions of projection beyond the two fitted planes: about 23 degrees from one to the next.
-constexpr int projection_directions = 48;
-
 /// From so many points on crossings are removed one by one where that is enough. The descent unfolds shorter
 /// loops within milliseconds, and to more open polygons.
 constexpr std::size_t least_long_loop = 128;
