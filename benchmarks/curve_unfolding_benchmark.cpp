@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/arguments.h"
 #include "benchmarks/cgal_filling.h"
 #include "benchmarks/cut_holes.h"
 #include "benchmarks/mesh_file.h"
@@ -513,21 +514,13 @@ void beside_cgal(const std::vector<std::string>& files) {
 
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a table that grows as it is measured
-  const std::set<std::string> words = {"table", "eight", "long", "large", "beside"};
-  std::set<std::string> asked;
-  std::vector<std::string> files;
-  for (int i = 1; i < argc; ++i)
-    if (words.count(argv[i]))
-      asked.insert(argv[i]);
-    else
-      files.push_back(argv[i]);
-  const auto wanted = [&](const char* name) { return asked.empty() || asked.count(name) > 0; };
+  const benchmarks::Arguments arguments(argc, argv, {"table", "eight", "long", "large", "beside"});
   try {
-    if (wanted("table")) table_one(files);
-    if (wanted("eight")) eight_holes(files);
-    if (wanted("long")) long_holes(files);
-    if (wanted("large")) large_mesh();
-    if (wanted("beside")) beside_cgal(files);
+    if (arguments.wanted("table")) table_one(arguments.files);
+    if (arguments.wanted("eight")) eight_holes(arguments.files);
+    if (arguments.wanted("long")) long_holes(arguments.files);
+    if (arguments.wanted("large")) large_mesh();
+    if (arguments.wanted("beside")) beside_cgal(arguments.files);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

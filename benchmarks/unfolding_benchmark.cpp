@@ -10,10 +10,10 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "benchmarks/arguments.h"
 #include "filter_curveunfold/loop_geometry.h"
 #include "filter_curveunfold/unfold.h"
 #include "tests/support/loop_families.h"
@@ -173,19 +173,11 @@ void loops_of_file(const char* path) {
 
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a table that grows as it is measured
-  const std::set<std::string> words = {"table", "eight", "long", "families"};
-  std::set<std::string> asked;
-  std::vector<std::string> files;
-  for (int i = 1; i < argc; ++i)
-    if (words.count(argv[i]))
-      asked.insert(argv[i]);
-    else
-      files.push_back(argv[i]);
-  const auto wanted = [&](const char* name) { return asked.empty() || asked.count(name) > 0; };
-  if (wanted("table")) table_one();
-  if (wanted("eight")) eight_holes();
-  if (wanted("long")) long_loops();
-  if (wanted("families")) all_families();
-  for (const std::string& file : files) loops_of_file(file.c_str());
+  const meshcomplete::benchmarks::Arguments arguments(argc, argv, {"table", "eight", "long", "families"});
+  if (arguments.wanted("table")) table_one();
+  if (arguments.wanted("eight")) eight_holes();
+  if (arguments.wanted("long")) long_loops();
+  if (arguments.wanted("families")) all_families();
+  for (const std::string& file : arguments.files) loops_of_file(file.c_str());
   return 0;
 }
