@@ -87,7 +87,7 @@ bool Remesher::wants_flip(Index h) const {
   if (!(after < margin * before)) return false;
   // While long edges are split no flip may make one: the split would undo the flip, and never end.
   if (splitting_ && (pc - pd).norm() > 0.5 * options_.longest * (target_[c] + target_[d])) return false;
-  if (forbidden(c, d) || c == d || patch_.joined(c, d)) return false;
+  if (!can_flip(patch_, h, options_.forbidden)) return false;
   const Vector3 before1 = (pb - pa).cross(pc - pa), before2 = (pa - pb).cross(pd - pb);
   const Vector3 after1 = (pd - pc).cross(pb - pc), after2 = (pc - pd).cross(pa - pd);
   const double bend_after = after1.dot(after2) / (after1.norm() * after2.norm());

@@ -44,8 +44,8 @@ struct Cost {
 struct Gap {
   std::vector<Index> triangles;  // that are taken out
   std::vector<Index> corners;    // vertices of the patch, in the sense of the triangles
-  std::vector<Vector3>
-      normals;  // unit, beyond the side from each corner to the next; zero where there is nothing
+  // Unit, beyond the side from each corner to the next; zero where there is nothing.
+  std::vector<Vector3> normals;
 };
 
 class GapFinder {
@@ -67,8 +67,8 @@ class GapFinder {
   std::optional<Gap> gap(const std::vector<Index>& triangles, const std::vector<char>& inside) const;
 
   const PatchMesh& patch_;
-  std::map<Index, Vector3>
-      rim_normals_;  // of the input's triangles at the rim edges, by the edge's first vertex
+  // Of the input's triangles at the rim edges, by the edge's first vertex.
+  std::map<Index, Vector3> rim_normals_;
 };
 
 std::vector<Gap> GapFinder::gaps(const std::vector<Index>& tangled, int rings) const {
