@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -124,7 +125,12 @@ TEST(HoleFiller, ALongRimWoundRoundACylinderIsDivided) {
     divided = true;
     // Its sides, one beside the other; the points of the chord belong to both.
     EXPECT_GT(filled.polygon.size(), rim.size());
-    EXPECT_EQ(filled.flat.size() % 2, filled.polygon.size() % 2);
+    // Each has two triangles fewer than points.
+    ASSERT_GE(filled.polygon.size(), filled.flat.size() + 4) << "two sides at least";
+    EXPECT_EQ((filled.polygon.size() - filled.flat.size()) % 2, 0u);
+    std::set<Index> corners;
+    for (const Triangle& t : filled.flat) corners.insert(t.begin(), t.end());
+    EXPECT_EQ(corners.size(), filled.polygon.size()) << "every side is there";
   }
   EXPECT_TRUE(divided);
 }
