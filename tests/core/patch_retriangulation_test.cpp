@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -108,8 +109,7 @@ TEST_F(PatchRetriangulation, AGapWithoutAFillingIsLeft) {
   EXPECT_EQ(patch_.triangles(), before);
 }
 
-TEST_F(PatchRetriangulation, GapsThatTouchDoNotDisturbEachOther) {
-  // Neighbouring tangles, so that the gaps share corners.
+TEST_F(PatchRetriangulation, NeighbouringTangles) {
   for (const Vector3& place : {Vector3(3, 4, 0), Vector3(5, 4, 0)}) {
     const Index poked = vertex_near(place);
     patch_.move(poked, patch_.position(poked) - Vector3(0, 0, 0.8));
@@ -175,6 +175,81 @@ TEST_F(PatchRetriangulationOfAQuad, NoForbiddenEdge) {
   rim_.forbidden = {{1, 3}};
   EXPECT_EQ(mend(), 0u);
   EXPECT_TRUE(patch_.joined(0, 2));
+}
+
+/// Two quads, not in one plane each, that cross. Closed along its other diagonal, from 1 to 3, the first one
+/// would not meet the second one as it is, closed along the diagonal from 4 to 6. Nor may the second one
+/// change to its other diagonal then, though that would crease it less.
+class PatchRetriangulationOfTwoQuads : public ::testing::Test {
+ protected:
+  PatchRetriangulationOfTwoQuads() { rim_.positions = positions_; }
+
+  PatchMesh patch(const std::vector<Triangle>& triangles) const { return {positions_, 8, triangles}; }
+  std::size_t mend(PatchMesh& patch) {
+    std::vector<Index> all(patch.triangle_count());
+    std::iota(all.begin(), all.end(), 0u);
+    return retriangulate(patch, all, rim_, std::vector<double>(8, 100), InputNeighbourhood(nothing_), {}, 0);
+  }
+  bool crossing(const PatchMesh& patch) const {
+    std::vector<Corners> triangles;
+    for (const auto& [a, b, c] : patch.triangles())
+      triangles.push_back({positions_[a], positions_[b], positions_[c]});
+    return !improper_pairs(triangles).empty();
+  }
+
+  const std::vector<Vector3> positions_ = {{0, 0, 0},          {4, 0, 4},          {4, 4, 0},
+                                           {0, 4, 4},          {4.25, -1.5, 3.25}, {-1.75, 5.5, -0.75},
+                                           {6.25, 3.5, -0.75}, {5.25, 2.5, 3.25}};
+  const std::vector<Triangle> both_ = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  const TriangleMesh nothing_;
+  Rim rim_;
+};
+
+TEST_F(PatchRetriangulationOfTwoQuads, AreAsTheySay) {
+  EXPECT_TRUE(crossing(patch(both_)));
+  EXPECT_FALSE(crossing(patch({{1, 2, 3}, {1, 3, 0}, {4, 5, 6}, {4, 6, 7}})));
+  EXPECT_TRUE(crossing(patch({{1, 2, 3}, {1, 3, 0}, {5, 6, 7}, {5, 7, 4}})));
+  PatchMesh second = patch({{4, 5, 6}, {4, 6, 7}});
+  EXPECT_EQ(mend(second), 1u);
+  EXPECT_TRUE(second.joined(5, 7)) << "what it would be by itself";
+}
+
+// What was taken out of the first gap is in the way no longer, and what has closed it is.
+TEST_F(PatchRetriangulationOfTwoQuads, TheSecondGapKeepsClearOfTheFirstOnesFilling) {
+  for (bool forbidden : {false, true}) {
+    if (forbidden) rim_.forbidden = {{5, 7}};
+    PatchMesh patch(positions_, 8, both_);
+    EXPECT_EQ(mend(patch), 2u);
+    EXPECT_TRUE(patch.joined(1, 3));
+    EXPECT_TRUE(patch.joined(4, 6));
+    EXPECT_FALSE(crossing(patch));
+  }
+}
+
+// A disk of three strips between two corners of its rim. Both of the outer ones could be closed along the
+// edge between these corners, but only one of them may.
+TEST(PatchRetriangulationOfStrips, TwoGapsDoNotGetTheSameEdge) {
+  const std::vector<Vector3> positions = {{0, 3, 0}, {-4, 0, 0}, {0, -3, 0},
+                                          {4, 0, 0}, {-1, 0, 2}, {1, 0, 2}};
+  const std::vector<Triangle> strips = {{0, 1, 4}, {1, 2, 4}, {0, 4, 5}, {4, 2, 5}, {0, 5, 3}, {5, 2, 3}};
+  const std::vector<Corners> blade = {
+      {Vector3(2.5, -0.25, 1.25), Vector3(2.5, 0.25, 1.25), Vector3(2.5, 0, 0.75)}};
+  const TriangleMesh nothing;
+  const InputNeighbourhood input(nothing);
+  Rim rim;
+  rim.positions.assign(positions.begin(), positions.begin() + 4);
+  rim.forbidden = {{1, 4}};
+  const auto mend = [&](PatchMesh& patch, const std::vector<Index>& tangled) {
+    return retriangulate(patch, tangled, rim, std::vector<double>(4, 100), input, blade, 0);
+  };
+  PatchMesh one(positions, 4, strips);
+  EXPECT_EQ(mend(one, {4, 5}), 1u);
+  EXPECT_TRUE(one.joined(0, 2)) << "the second strip by itself";
+  PatchMesh both(positions, 4, strips);
+  EXPECT_EQ(mend(both, {0, 1, 4, 5}), 1u);
+  EXPECT_TRUE(both.joined(0, 2));
+  EXPECT_FALSE(both.joined(1, 4)) << "the first strip has the edge";
+  EXPECT_TRUE(both.joined(3, 5)) << "the second one stays as it was";
 }
 
 TEST_F(PatchRetriangulation, CanBeCancelled) {
