@@ -281,6 +281,43 @@ TEST_F(PatchDefects, ApexPulledThroughTheSphere) {
   EXPECT_EQ(result.input_triangles, sorted(old_ones));
 }
 
+// A caller can mend both at once: what meets the patch is listed, and what meets the input.
+TEST(PatchCheck, ListsContactsWithItselfAndWithTheInput) {
+  const TriangleMesh sphere = test::icosphere(3);
+  const test::CutOut cut = test::cut_out(sphere, [&](Index f) {
+    const Triangle& t = sphere.triangles[f];
+    return std::any_of(t.begin(), t.end(), [&](Index v) { return sphere.vertices[v].z() > 0.1; });
+  });
+  const std::vector<BoundaryLoop> loops = loops_of(cut.mesh);
+  ASSERT_TRUE(check(cut.mesh, cut.patch, loops).passed());
+  Patch patch = cut.patch;
+  const auto by_x = [](const Vector3& a, const Vector3& b) { return a.x() < b.x(); };
+  const auto by_y = [](const Vector3& a, const Vector3& b) { return a.y() < b.y(); };
+  const auto left = std::min_element(patch.vertices.begin(), patch.vertices.end(), by_x);
+  const auto back = std::max_element(patch.vertices.begin(), patch.vertices.end(), by_y);
+  ASSERT_NE(left, back);
+  *left = Vector3(3, 0.0625, 0.5);  // through the patch on the other side
+  *back = Vector3(0, 0.25, -1.5);   // through the bottom of the sphere
+  std::set<Index> with_itself, with_input, met;
+  const Index faces = static_cast<Index>(cut.mesh.triangles.size());
+  for (const auto& [a, b] : improper_pairs(corners_of(test::with_patch(cut.mesh, patch)))) {
+    if (a >= faces) {
+      with_itself.insert({a - faces, b - faces});
+    } else {
+      with_input.insert(b - faces);
+      met.insert(a);
+    }
+  }
+  ASSERT_FALSE(with_itself.empty());
+  ASSERT_FALSE(std::includes(with_itself.begin(), with_itself.end(), with_input.begin(), with_input.end()));
+  const PatchCheck result = check(cut.mesh, patch, loops);
+  EXPECT_EQ(result.defect, PatchDefect::meets_itself) << "what is found first";
+  std::set<Index> all = with_itself;
+  all.insert(with_input.begin(), with_input.end());
+  EXPECT_EQ(result.patch_triangles, sorted(all));
+  EXPECT_EQ(result.input_triangles, sorted(met));
+}
+
 // --- special inputs
 // ---------------------------------------------------------------------------------------------------
 

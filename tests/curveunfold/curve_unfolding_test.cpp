@@ -13,6 +13,7 @@
 #include "common/core/error.h"
 #include "common/core/mesh_statistics.h"
 #include "common/core/patch_check.h"
+#include "common/core/triangle_intersection.h"
 #include "filter_curveunfold/loop_geometry.h"
 #include "tests/support/loop_families.h"
 #include "tests/support/meshes.h"
@@ -390,6 +391,39 @@ TEST(CurveUnfolding, BothPatchesYieldWhereOneIsNotEnough) {
   EXPECT_EQ(result.completion.report.count(HoleOutcome::closed), 2u);
   for (const HoleReport& hole : holes(result))
     EXPECT_NE(hole.route.find("membrane"), std::string::npos) << hole.route << hole.reason;
+}
+
+// Three tubes that end short of one place, from three sides: each end by itself is closed by a dome that
+// meets both of the others.
+TEST(CurveUnfolding, ThreePatchesThatWouldMeetEachOther) {
+  const double pi = std::acos(-1.0);
+  const auto placed = [&](int k, const Vector3& p) {
+    const Vector3 out = p + Vector3(0, 0, 0.65);
+    const double turn = 2 * pi * k / 3;
+    return as_stored(Vector3(std::cos(turn) * out.z() - std::sin(turn) * out.x(),
+                             std::sin(turn) * out.z() + std::cos(turn) * out.x(), out.y()));
+  };
+  TriangleMesh mesh;
+  for (int k = 0; k < 3; ++k) {
+    TriangleMesh tube = test::open_cylinder(24, 8);
+    for (Vector3& p : tube.vertices) p = placed(k, p);
+    mesh = test::join(mesh, tube);
+  }
+  ASSERT_EQ(count_improper_pairs(test::corners_of(mesh)), 0u);
+  std::vector<std::vector<std::array<Vector3, 3>>> alone;
+  for (const BoundaryLoop& loop : loops_of(mesh)) {
+    if (mesh.vertices[loop.vertices[0]].norm() > 1.5) continue;
+    const CurveUnfoldingResult result = fill_loop(mesh, loop);
+    alone.emplace_back();
+    for (const Triangle& t : result.completion.patch.triangles)
+      alone.back().push_back(corners(mesh, result.completion.patch, t));
+  }
+  ASSERT_EQ(alone.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_FALSE(improper_pairs_between(alone[i], alone[(i + 1) % 3]).empty());
+  const CurveUnfoldingResult result = fill(mesh);
+  expect_adds_up(mesh, result);
+  EXPECT_EQ(result.completion.report.count(HoleOutcome::closed), 6u);
 }
 
 TEST(CurveUnfolding, StagesAreTimed) {

@@ -141,6 +141,26 @@ TEST(Embedding, ResolutionDividesTheEdgeLength) {
   EXPECT_NEAR(mean_inner_edge(embed(rim, flat, options)), 0.5 * once, 0.1 * once);
 }
 
+// From a thousand vertices on the first solve is done with longer edges. The patch has the resolution of the
+// mesh around all the same, everywhere, and goes on with its curvature.
+TEST(Embedding, LargePatchesHaveTheResolutionAround) {
+  constexpr double angle = 0.9;
+  const Rim rim = rim_of(test::sphere_with_hole(5, angle));
+  const PatchMesh patch = embed(rim, flat_triangulation(rim), {});
+  expect_disk_on(rim, patch);
+  EXPECT_GT(patch.vertex_count(), 2000u);
+  double length = 0;
+  for (double at : rim.edge_length) length += at / static_cast<double>(rim.edge_length.size());
+  EXPECT_NEAR(mean_inner_edge(patch), length, 0.1 * length);
+  std::size_t edges = 0, uneven = 0;
+  for_inner_edges(patch, [&](Index h) {
+    ++edges;
+    uneven += patch.length(h) < 0.6 * length || patch.length(h) > 1.5 * length;
+  });
+  EXPECT_LT(uneven, edges / 100);
+  for (const Vector3& p : patch.positions()) EXPECT_NEAR(p.norm(), 1, 0.15 * (1 - std::cos(angle)));
+}
+
 TEST(Embedding, SmallRims) {
   const Rim triangle = [] {
     TriangleMesh mesh = test::tetrahedron();
