@@ -58,8 +58,9 @@ struct HoleReport {
 struct CompletionReport {
   std::vector<HoleReport> holes;
   std::vector<std::pair<std::string, double>>
-      stage_seconds;               ///< wall seconds per stage, in the order they ran
-  std::vector<std::string> notes;  ///< anything else the user should know
+      stage_seconds;                                    ///< wall seconds per stage, in the order they ran
+  std::vector<std::string> notes;                       ///< anything else the user should know
+  std::vector<std::pair<std::string, double>> figures;  ///< what the run came to in numbers, by name
 
   std::size_t count(HoleOutcome outcome) const;
 };

@@ -48,9 +48,9 @@ ParameterDeclaration switch_parameter(const char* name, const char* label, const
 }
 
 ParameterDeclaration choice_parameter(const char* name, const char* label, const char* meaning,
-                                      QStringList choices) {
+                                      QStringList choices, int fallback) {
   ParameterDeclaration result = parameter(ParameterType::choice, name, label, meaning);
-  result.fallback = 0;
+  result.fallback = fallback;
   result.minimum = 0;
   result.maximum = static_cast<double>(choices.size() - 1);
   result.choices = std::move(choices);
@@ -72,6 +72,42 @@ ParameterDeclaration length_parameter(const char* name, const char* label, const
   result.unit = "mesh units";
   result.fallback = 0.0;
   result.minimum = 0;
+  return result;
+}
+
+ParameterDeclaration positive_parameter(const char* name, const char* label, const char* meaning,
+                                        const char* unit, double fallback) {
+  ParameterDeclaration result = parameter(ParameterType::real, name, label, meaning);
+  result.unit = unit;
+  result.fallback = fallback;
+  result.minimum = 0;
+  result.above_minimum = true;
+  return result;
+}
+
+ParameterDeclaration point_parameter(const char* name, const char* label, const char* meaning,
+                                     const Vector3& fallback) {
+  ParameterDeclaration result = parameter(ParameterType::point, name, label, meaning);
+  result.fallback = QVariantList{fallback.x(), fallback.y(), fallback.z()};
+  return result;
+}
+
+ParameterDeclaration centre_parameter(const char* name, const char* label, const char* meaning) {
+  ParameterDeclaration result = point_parameter(name, label, meaning, Vector3::Zero());
+  result.document_default = [](const MeshDocument& document) {
+    const MeshModel* model = document.mm();
+    if (model == nullptr || model->cm.bbox.IsNull()) return QVariant();
+    const Point3m centre = model->cm.bbox.Center();
+    return QVariant(QVariantList{double(centre[0]), double(centre[1]), double(centre[2])});
+  };
+  result.default_in_words = "the centre of the bounding box";
+  return result;
+}
+
+ParameterDeclaration other_layer_parameter(const char* name, const char* label, const char* meaning) {
+  ParameterDeclaration result = parameter(ParameterType::layer, name, label, meaning);
+  result.meaning += " The current layer, whose holes are closed, stands for none.";
+  result.default_in_words = "the current layer, for none";
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/core/hole_selection.h"
+#include "common/core/mesh.h"
 #include "common/host/filter_declaration.h"
 
 namespace meshcomplete {
@@ -19,10 +20,20 @@ HoleSelectionOptions hole_selection_options(const ParameterValues& parameters);
 /// Building blocks for further parameters.
 ParameterDeclaration switch_parameter(const char* name, const char* label, const char* meaning, bool on);
 ParameterDeclaration choice_parameter(const char* name, const char* label, const char* meaning,
-                                      QStringList choices);
+                                      QStringList choices, int fallback = 0);
 ParameterDeclaration integer_parameter(const char* name, const char* label, const char* meaning,
                                        const char* unit, int fallback, int minimum, int maximum);
+/// A number greater than 0.
+ParameterDeclaration positive_parameter(const char* name, const char* label, const char* meaning,
+                                        const char* unit, double fallback);
 ParameterDeclaration length_parameter(const char* name, const char* label, const char* meaning);
+ParameterDeclaration point_parameter(const char* name, const char* label, const char* meaning,
+                                     const Vector3& fallback);
+/// A point whose default is the centre of the current layer's bounding box.
+ParameterDeclaration centre_parameter(const char* name, const char* label, const char* meaning);
+/// A layer other than the current one, which stands for none and is the default (see other_layers.h). The
+/// meaning is completed by a sentence that says so.
+ParameterDeclaration other_layer_parameter(const char* name, const char* label, const char* meaning);
 
 }  // namespace host
 }  // namespace meshcomplete

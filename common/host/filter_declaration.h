@@ -1,8 +1,8 @@
 // Filters as data: a plugin says what its filters are called, which parameters they take and what they do;
 // the adapter (filter_plugin.h) turns that into the virtual functions of the MeshLab release at hand, the
 // runner prints it for
-// `--describe`, and the documentation is made from it. No MeshLab type appears here except the document's
-// name.
+// `--describe`, and the documentation is made from it. No MeshLab type appears here except the names of the
+// document and of its layers.
 #pragma once
 
 #include <QString>
@@ -15,10 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "common/core/mesh.h"
 #include "common/core/patch.h"
 #include "common/core/progress.h"
 
 class MeshDocument;
+class MeshModel;
 
 namespace meshcomplete {
 namespace host {
@@ -31,7 +33,8 @@ enum class ParameterType {
            ///< diagonal
   choice,  ///< one of `choices`; the value is its position
   text,
-  layer,  ///< another mesh of the document
+  point,  ///< a point or a direction: a list of three numbers
+  layer,  ///< a mesh of the document; the default is the current one
   open_file,
   save_file,
 };
@@ -50,7 +53,13 @@ struct ParameterDeclaration {
   QString default_in_words;  ///< for --describe and the documentation, when document_default is set
   double minimum = -std::numeric_limits<double>::infinity();  ///< allowed values, inclusive
   double maximum = std::numeric_limits<double>::infinity();
+  bool above_minimum = false;  ///< the minimum itself is not allowed
   QStringList choices;
+
+  /// Whether a number lies in the range of allowed values.
+  bool allows(double value) const {
+    return (above_minimum ? value > minimum : value >= minimum) && value <= maximum;
+  }
 };
 
 /// The values of one run, by parameter name. Asking for an undeclared name is a programming error and throws.
@@ -62,6 +71,8 @@ class ParameterValues {
   virtual double real(const char* name) const = 0;  ///< also for `length`, in mesh units
   virtual int choice(const char* name) const = 0;
   virtual QString text(const char* name) const = 0;  ///< also for files
+  virtual Vector3 point(const char* name) const = 0;
+  virtual const MeshModel& layer(const char* name) const = 0;
 };
 
 /// What a filter is given when it runs. It may throw anything: the adapter turns it into MeshLab's way of

@@ -15,6 +15,8 @@ QVariant default_value(const ParameterDeclaration& parameter, const MeshDocument
     const QVariant value = parameter.document_default(document);
     if (value.isValid()) return value;
   }
+  if (parameter.type == ParameterType::layer)
+    return document.meshList.indexOf(const_cast<MeshModel*>(document.mm()));  // Qt compares with what it holds
   return parameter.fallback;
 }
 
@@ -28,6 +30,15 @@ float dialog_diagonal(const MeshDocument& document) {
   const MeshModel* mesh = document.mm();
   if (mesh == nullptr || mesh->cm.bbox.IsNull() || !(mesh->cm.bbox.Diag() > 0)) return 1.0f;
   return mesh->cm.bbox.Diag();
+}
+
+QVariantList as_numbers(const vcg::Point3f& point) {
+  return {double(point[0]), double(point[1]), double(point[2])};
+}
+
+vcg::Point3f as_point(const QVariant& numbers) {
+  const QVariantList list = numbers.toList();
+  return vcg::Point3f(list.value(0).toFloat(), list.value(1).toFloat(), list.value(2).toFloat());
 }
 
 /// The value in MeshLab's list, or an invalid QVariant when it is of another kind than declared.
@@ -47,6 +58,8 @@ QVariant listed_value(const ParameterDeclaration& parameter, const RichParameter
       return value.isEnum() ? QVariant(value.getEnum()) : QVariant();
     case ParameterType::text:
       return value.isString() ? QVariant(value.getString()) : QVariant();
+    case ParameterType::point:
+      return value.isPoint3f() ? QVariant(as_numbers(value.getPoint3f())) : QVariant();
     case ParameterType::layer:
       return value.isMesh() ? QVariant(document.meshList.indexOf(value.getMesh())) : QVariant();
     case ParameterType::open_file:
@@ -72,17 +85,25 @@ QString complaint(const ParameterDeclaration& parameter, const QVariant& value) 
   }
   if (parameter.type == ParameterType::layer && value.toInt() < 0)
     return QString("Parameter \"%1\": choose a layer of this project.").arg(parameter.name);
+  if (parameter.type == ParameterType::point) {
+    for (const QVariant& number : value.toList())
+      if (!std::isfinite(number.toDouble()))
+        return QString("Parameter \"%1\" must be three finite numbers.").arg(parameter.name);
+  }
   if (!number) return QString();
   const double given = value.toDouble();
   if (!std::isfinite(given)) return QString("Parameter \"%1\" must be a finite number.").arg(parameter.name);
-  if (given >= parameter.minimum && given <= parameter.maximum) return QString();
+  if (parameter.allows(given)) return QString();
   const QString unit = parameter.unit.isEmpty() ? QString() : " " + parameter.unit;
   if (std::isfinite(parameter.minimum) && std::isfinite(parameter.maximum))
     return QString("Parameter \"%1\" must lie between %2 and %3%4; it is %5.")
         .arg(parameter.name, in_words(parameter.minimum), in_words(parameter.maximum), unit, in_words(given));
-  const bool too_small = given < parameter.minimum;
+  const bool too_small = given <= parameter.minimum;
   return QString("Parameter \"%1\" must be %2 %3%4; it is %5.")
-      .arg(parameter.name, too_small ? "at least" : "at most",
+      .arg(parameter.name,
+           !too_small                ? "at most"
+           : parameter.above_minimum ? "greater than"
+                                     : "at least",
            in_words(too_small ? parameter.minimum : parameter.maximum), unit, in_words(given));
 }
 
@@ -113,8 +134,13 @@ void add_parameters(const FilterDeclaration& filter, MeshDocument& document, Ric
       case ParameterType::text:
         list.addParam(RichString(name, value.toString(), label, help));
         break;
+      case ParameterType::point:
+        list.addParam(RichPoint3f(name, as_point(value), label, help));
+        break;
       case ParameterType::layer:
-        list.addParam(RichMesh(name, document.mm(), &document, label, help));
+        // Without a mesh to name, MeshLab stops with an assertion unless the document is left out too.
+        list.addParam(
+            RichMesh(name, document.mm(), document.mm() == nullptr ? nullptr : &document, label, help));
         break;
       case ParameterType::open_file:
         list.addParam(RichOpenFile(name, value.toString(), parameter.choices, label, help));
@@ -128,7 +154,7 @@ void add_parameters(const FilterDeclaration& filter, MeshDocument& document, Ric
 
 MeshLabParameterValues::MeshLabParameterValues(const FilterDeclaration& filter, const MeshDocument& document,
                                                const RichParameterList& list)
-    : filter_(filter) {
+    : filter_(filter), document_(document) {
   for (const ParameterDeclaration& parameter : filter.parameters) {
     QVariant value = default_value(parameter, document);
     if (list.hasParameter(parameter.name)) {
@@ -160,7 +186,7 @@ bool MeshLabParameterValues::boolean(const char* name) const {
 }
 
 int MeshLabParameterValues::integer(const char* name) const {
-  return value(name, {ParameterType::integer, ParameterType::layer}).toInt();
+  return value(name, {ParameterType::integer}).toInt();
 }
 
 double MeshLabParameterValues::real(const char* name) const {
@@ -173,6 +199,15 @@ int MeshLabParameterValues::choice(const char* name) const {
 
 QString MeshLabParameterValues::text(const char* name) const {
   return value(name, {ParameterType::text, ParameterType::open_file, ParameterType::save_file}).toString();
+}
+
+Vector3 MeshLabParameterValues::point(const char* name) const {
+  const QVariantList numbers = value(name, {ParameterType::point}).toList();
+  return Vector3(numbers.value(0).toDouble(), numbers.value(1).toDouble(), numbers.value(2).toDouble());
+}
+
+const MeshModel& MeshLabParameterValues::layer(const char* name) const {
+  return *document_.meshList.at(value(name, {ParameterType::layer}).toInt());
 }
 
 }  // namespace host

@@ -53,6 +53,14 @@ QString describe_closed(const CompletionReport& report) {
       .arg(counted(faces, "face", "faces"));
 }
 
+QString describe_figures(const CompletionReport& report) {
+  QStringList figures;
+  for (const auto& figure : report.figures)
+    figures << QString("%1 %2").arg(QString::fromStdString(figure.first),
+                                    QString::number(figure.second, 'g', 7));
+  return "Figures: " + figures.join(", ");
+}
+
 QString summary(const CompletionReport& report) {
   if (report.holes.empty()) return "The mesh has no holes: there is nothing to close.";
   QString line = QString("Closed %1 of %2")
@@ -85,6 +93,7 @@ QStringList describe_holes(const CompletionReport& report) {
   if (open > most_open_lines)
     lines << QString("... and %1 more that are not closed").arg(open - most_open_lines);
   for (const std::string& note : report.notes) lines << QString::fromStdString(note);
+  if (!report.figures.empty()) lines << describe_figures(report);
   return lines << summary(report);
 }
 

@@ -207,6 +207,17 @@ TEST(HoleLog, OneLinePerHole) {
             "Closed 1 of 3 holes, 1 could not be closed, 1 left open as asked or for the reason given.");
 }
 
+TEST(HoleLog, FiguresAreOneLine) {
+  CompletionReport report;
+  report.holes = {hole(HoleOutcome::closed, 8)};
+  report.notes = {"a note"};
+  report.figures = {{"nodes", 1234567}, {"smallest leaf", 0.0625}};
+  const QStringList lines = describe_holes(report);
+  ASSERT_EQ(lines.size(), 4);
+  EXPECT_EQ(lines[1], "a note");
+  EXPECT_EQ(lines[2], "Figures: nodes 1234567, smallest leaf 0.0625");
+}
+
 TEST(HoleLog, ManyHolesAreSummedUp) {
   CompletionReport report;
   for (std::size_t i = 0; i < 500; ++i) report.holes.push_back(hole(HoleOutcome::closed, 3 + i % 20));

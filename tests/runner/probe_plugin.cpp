@@ -9,6 +9,9 @@
 #include <thread>
 
 #include "common/core/error.h"
+#include "common/host/close_holes_parameters.h"
+#include "common/host/meshlab_version.h"
+#include "common/host/other_layers.h"
 
 namespace {
 
@@ -73,6 +76,7 @@ void apply_probe(FilterRun& run) {
   if (values.boolean("Fail")) throw CompletionError("probing", "The probe was told to fail.");
   run.report.stage_seconds.emplace_back("probing", values.real("Seconds"));
   run.report.notes.push_back("a note");
+  run.report.figures = {{"some number", 0.5}, {"no number", std::numeric_limits<double>::infinity()}};
   const HoleOutcome outcomes[] = {HoleOutcome::closed, HoleOutcome::partial, HoleOutcome::skipped,
                                   HoleOutcome::failed};
   run.report.holes.push_back(hole(outcomes[values.choice("Outcome")]));
@@ -105,6 +109,29 @@ FilterDeclaration probe() {
   return filter;
 }
 
+/// Says what it was given.
+FilterDeclaration layers() {
+  FilterDeclaration filter;
+  filter.name = "Probe: Layers";
+  filter.python_name = "probe_layers";
+  filter.description = "Looks at another layer.";
+  filter.parameters = {other_layer_parameter("Other", "Other", "Another layer."),
+                       centre_parameter("Place", "Place", "A place."),
+                       positive_parameter("Price", "Price", "A price.", "coins", 2)};
+  filter.apply = [](FilterRun& run) {
+    const MeshModel* other = other_layer(run, "Other");
+    const Vector3 place = run.parameters.point("Place");
+    run.log(QString("Other=%1 Points=%2 Views=%3 Place=%4 %5 %6.")
+                .arg(other == nullptr ? "none" : other->label())
+                .arg(other_layer_points(run, "Other").size())
+                .arg(layer_views(run).size())
+                .arg(place.x())
+                .arg(place.y())
+                .arg(place.z()));
+  };
+  return filter;
+}
+
 /// Code that goes wrong in ways that a filter must not.
 FilterDeclaration bad_code() {
   FilterDeclaration filter;
@@ -125,4 +152,4 @@ FilterDeclaration bad_code() {
 
 }  // namespace
 
-ProbePlugin::ProbePlugin() { declare({probe(), bad_code()}, this); }
+ProbePlugin::ProbePlugin() { declare({probe(), layers(), bad_code()}, this); }

@@ -142,6 +142,7 @@ class Report(RunnerCase):
         self.assertEqual(ran["parameters"]["Kind"], "annealing")
         self.assertEqual(ran["parameters"]["Count"], "5")
         self.assertEqual(ran["notes"], ["a note"])
+        self.assertEqual(ran["figures"], {"some number": 0.5, "no number": None})
         self.assertTrue(ran["done"])
         self.assertGreaterEqual(ran["seconds"], 0.05)
         (read,), (written,) = report["inputs"], report["outputs"]

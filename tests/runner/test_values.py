@@ -3,9 +3,10 @@
 import math
 import unittest
 
-from runner_case import Ply, RunnerCase
+from runner_case import Ply, RunnerCase, write_ply
 
 PROBE = "Probe: Everything"
+LAYERS = "Probe: Layers"
 
 
 class Values(RunnerCase):
@@ -71,6 +72,65 @@ class Values(RunnerCase):
                     "Outcome=closed", "Text=abc")
         explicit = Ply(self.path("out.ply"))
         self.assertEqual(implicit.elements, explicit.elements)
+
+
+class LayersAndPoints(RunnerCase):
+    def setUp(self):
+        super().setUp()
+        write_ply(self.path("cloud.ply"), [(0, 0, 0), (1, 2, 3)], [])
+        write_ply(self.path("box.ply"), [(0, 0, 0), (4, 0, 0), (0, 2, 0), (0, 0, 1)], [(0, 2, 1), (0, 1, 3)])
+
+    def logged(self, *parameters, inputs=("cloud.ply", "box.ply")):
+        options = ["-p", *parameters] if parameters else []
+        result = self.check(0, "-i", *inputs, "-f", LAYERS, *options, "-o", "out.ply", "--report", "report.json")
+        return next(line for line in result.stdout.split("\n") if line.startswith("Other="))
+
+    def wrong(self, *parameters):
+        return self.check(2, "-i", "cloud.ply", "box.ply", "-f", LAYERS, "-p", *parameters, "-o", "out.ply").stderr
+
+    def test_layers_by_number_and_name(self):
+        self.assertEqual(self.logged("Other=0"), "Other=cloud.ply Points=2 Views=0 Place=2 1 0.5.")
+        self.assertEqual(self.logged("Other=cloud.ply"), "Other=cloud.ply Points=2 Views=0 Place=2 1 0.5.")
+        self.assertEqual(self.read_report()["filters"][0]["parameters"]["Other"], "0")
+        self.assertIn("there are 2 layers", self.wrong("Other=2"))
+        self.assertIn("there are 2 layers", self.wrong("Other=-1"))
+        self.assertIn('Did you mean "cloud.ply"?', self.wrong("Other=clowd.ply"))
+
+    def test_the_current_layer_is_the_default_and_stands_for_none(self):
+        for parameters in ((), ("Other=1",), ("Other=box.ply",)):
+            self.assertEqual(self.logged(*parameters), "Other=none Points=0 Views=0 Place=2 1 0.5.")
+        text = " ".join(self.check(0, "--describe", LAYERS).stdout.split())
+        self.assertIn("default: the current layer, for none", text)
+        self.assertIn("3 numbers; default: the centre of the bounding box", text)
+        self.assertIn("number; greater than 0; unit: coins; default: 2", text)
+
+    def test_a_camera_in_a_file(self):
+        camera = {"view_px": 7.0, "view_py": 0.0, "view_pz": 0.0, "x_axisx": 1.0, "x_axisy": 0.0, "x_axisz": 0.0,
+                  "y_axisx": 0.0, "y_axisy": 1.0, "y_axisz": 0.0, "z_axisx": 0.0, "z_axisy": 0.0, "z_axisz": 1.0,
+                  "focal": 1.0, "scalex": 0.1, "scaley": 0.1, "centerx": 0.0, "centery": 0.0}
+        header = ["ply", "format ascii 1.0", "element camera 1", *(f"property float {name}" for name in camera),
+                  "property int viewportx", "property int viewporty", *(f"property float k{i}" for i in range(1, 5)),
+                  "element vertex 1", *(f"property float {axis}" for axis in "xyz"), "end_header"]
+        with open(self.path("scan.ply"), "w") as file:
+            file.write("\n".join(header) + "\n" + " ".join(map(str, camera.values())) + " 640 480 0 0 0 0\n1 1 1\n")
+        self.assertIn("Views=1", self.logged(inputs=("scan.ply", "cloud.ply", "box.ply")))
+
+    def test_points(self):
+        for text in ("1 -2.5 3e2", "1,-2.5,300", " 1; -2.5; 300 "):
+            self.assertIn("Place=1 -2.5 300.", self.logged("Place=" + text))
+        self.assertIn("has 2 numbers, not 3", self.wrong("Place=1 2"))
+        self.assertIn("is not a number", self.wrong("Place=1 2 z"))
+
+    def test_numbers_above_zero(self):
+        self.logged("Price=1e-20")
+        self.assertIn("greater than 0", self.wrong("Price=0"))
+
+    def test_layers_and_points_in_scripts(self):
+        with open(self.path("script.mlx"), "w") as file:
+            file.write('<FilterScript><filter name="Probe: Layers"><Param name="Other" type="RichMesh" value="0"/>'
+                       '<Param name="Place" type="RichPoint3f" x="1" y="0" z="-1"/></filter></FilterScript>')
+        result = self.check(0, "-i", "cloud.ply", "box.ply", "-s", "script.mlx", "-o", "out.ply")
+        self.assertIn("Other=cloud.ply Points=2 Views=0 Place=1 0 -1.", result.stdout)
 
 
 class Scripts(RunnerCase):

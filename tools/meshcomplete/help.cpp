@@ -99,7 +99,8 @@ Other
   --version, --help
 
 Values: true or false; numbers with a decimal point; lengths in mesh units or in per cent of the bounding box's
-diagonal (2%); choices by position from 0 or by name; layers by position from 0 or by name.
+diagonal (2%); choices by position from 0 or by name; layers by position from 0 or by name; points as three numbers
+("NAME=1 0 -2.5").
 
 Nothing in a mesh changes by being read and written: vertices keep their order and their exact coordinates. One
 exception: STL stores every triangle on its own, and vertices at equal positions are merged, as MeshLab does.

@@ -51,12 +51,16 @@ QJsonObject filter_as_json(const FilterRecord& filter) {
   for (const auto& parameter : filter.parameters) parameters.insert(parameter.first, parameter.second);
   QJsonArray notes;
   for (const std::string& note : filter.report.notes) notes.append(text(note));
+  QJsonObject figures;
+  for (const auto& figure : filter.report.figures)
+    figures.insert(QString::fromStdString(figure.first), number(figure.second));
   return {{"name", filter.name},
           {"parameters", parameters},
           {"done", filter.done},
           {"message", filter.message},
           {"seconds", number(filter.seconds)},
           {"notes", notes},
+          {"figures", figures},
           {"log", QJsonArray::fromStringList(filter.log)}};
 }
 

@@ -140,7 +140,7 @@ void Session::check_declared_parameters(const Step& step) const {
       throw UsageError(QString("%1 has no parameter \"%2\".%3 --describe \"%1\" shows all of them.")
                            .arg(step.filter->name, given.first, did_you_mean(given.first, names)));
     const ParameterDeclaration& declaration = step.filter->declaration->parameters[std::size_t(position)];
-    parse_value(as_host_parameter(declaration), &declaration, {}, given.second);
+    parse_value(as_host_parameter(declaration), &declaration, nullptr, given.second);
   }
 }
 

@@ -46,6 +46,7 @@ std::map<QString, QVariant> Session::values_of(const Step& step, FilterRecord& r
   std::map<QString, QVariant> values;
   QStringList names;
   for (const HostParameter& parameter : parameters) names << parameter.name;
+  const std::vector<host::LayerInfo> layers = host_.layers();
   for (const auto& given : step.parameters) {
     const int position = names.indexOf(given.first);
     if (position < 0)
@@ -53,7 +54,7 @@ std::map<QString, QVariant> Session::values_of(const Step& step, FilterRecord& r
                            .arg(step.filter->name, given.first, did_you_mean(given.first, names)));
     const HostParameter& parameter = parameters[std::size_t(position)];
     values[given.first] =
-        parse_value(parameter, declaration_of(*step.filter, given.first), host_.layers(), given.second);
+        parse_value(parameter, declaration_of(*step.filter, given.first), &layers, given.second);
   }
   for (const HostParameter& parameter : parameters) {
     const auto given = values.find(parameter.name);

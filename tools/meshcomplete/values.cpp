@@ -35,6 +35,8 @@ ValueKind kind_of(ParameterType type) {
       return ValueKind::choice;
     case ParameterType::text:
       return ValueKind::text;
+    case ParameterType::point:
+      return ValueKind::numbers;
     case ParameterType::layer:
       return ValueKind::layer;
     case ParameterType::open_file:
@@ -49,7 +51,7 @@ ValueKind kind_of(ParameterType type) {
 class ValueParser {
  public:
   ValueParser(const HostParameter& parameter, const ParameterDeclaration* declaration,
-              const std::vector<LayerInfo>& layers, const QString& text)
+              const std::vector<LayerInfo>* layers, const QString& text)
       : parameter_(parameter),
         declaration_(declaration),
         layers_(layers),
@@ -111,8 +113,7 @@ class ValueParser {
   }
 
   double in_range(double value) const {
-    if (declaration_ != nullptr && (value < declaration_->minimum || value > declaration_->maximum))
-      wrong("is out of range");
+    if (declaration_ != nullptr && !declaration_->allows(value)) wrong("is out of range");
     return value;
   }
 
@@ -154,11 +155,17 @@ class ValueParser {
   int layer() const {
     bool fine = false;
     const int position = text_.toInt(&fine);
-    if (fine && position >= 0 && std::size_t(position) < layers_.size()) return position;
-    for (std::size_t i = 0; i < layers_.size(); ++i)
-      if (layers_[i].label == text_) return int(i);
-    if (fine && layers_.empty()) return position;
-    wrong(QString("is not a layer; there are %1 layers").arg(layers_.size()));
+    if (layers_ == nullptr) return position;
+    if (fine && position >= 0 && std::size_t(position) < layers_->size()) return position;
+    for (std::size_t i = 0; i < layers_->size(); ++i)
+      if ((*layers_)[i].label == text_) return int(i);
+    wrong(QString("is not a layer; there are %1 layers").arg(layers_->size()), did_you_mean(text_, labels()));
+  }
+
+  QStringList labels() const {
+    QStringList names;
+    for (const LayerInfo& layer : *layers_) names << layer.label;
+    return names;
   }
 
   QVariantList numbers() const {
@@ -173,7 +180,7 @@ class ValueParser {
 
   const HostParameter& parameter_;
   const ParameterDeclaration* declaration_;
-  const std::vector<LayerInfo>& layers_;
+  const std::vector<LayerInfo>* layers_;
   QString text_;
   QString exact_;
 };
@@ -188,6 +195,7 @@ HostParameter as_host_parameter(const ParameterDeclaration& declaration) {
   parameter.meaning = declaration.meaning;
   parameter.value = declaration.fallback;
   parameter.choices = declaration.choices;
+  if (declaration.type == ParameterType::point) parameter.count = 3;
   return parameter;
 }
 
@@ -231,7 +239,8 @@ QString range_in_words(const ParameterDeclaration& declaration) {
       std::isfinite(declaration.maximum) && declaration.maximum < std::numeric_limits<int>::max();
   if (low && high)
     return number_in_words(declaration.minimum) + " to " + number_in_words(declaration.maximum);
-  if (low) return "at least " + number_in_words(declaration.minimum);
+  if (low)
+    return (declaration.above_minimum ? "greater than " : "at least ") + number_in_words(declaration.minimum);
   if (high) return "at most " + number_in_words(declaration.maximum);
   return QString();
 }
@@ -264,7 +273,7 @@ QString value_in_words(const HostParameter& parameter, const QVariant& value) {
 }
 
 QVariant parse_value(const HostParameter& parameter, const ParameterDeclaration* declaration,
-                     const std::vector<LayerInfo>& layers, const QString& text) {
+                     const std::vector<LayerInfo>* layers, const QString& text) {
   return ValueParser(parameter, declaration, layers, text).parse();
 }
 

@@ -22,10 +22,11 @@ QString range_in_words(const host::ParameterDeclaration& declaration);
 QString value_in_words(const host::HostParameter& parameter, const QVariant& value);
 
 /// The value that `text` stands for: `2%` for lengths, choices by position or name, layers by position or
-/// label. `declaration` (may be null) adds the allowed range. Throws UsageError that names the parameter,
-/// what is wrong, and what is allowed.
+/// label. Without `layers` (null), before anything is loaded, every layer will do. `declaration` (may be
+/// null) adds the allowed range. Throws UsageError that names the parameter, what is wrong, and what is
+/// allowed.
 QVariant parse_value(const host::HostParameter& parameter, const host::ParameterDeclaration* declaration,
-                     const std::vector<host::LayerInfo>& layers, const QString& text);
+                     const std::vector<host::LayerInfo>* layers, const QString& text);
 
 }  // namespace runner
 }  // namespace meshcomplete
