@@ -138,7 +138,7 @@ void PatchMesh::flip(Index h) {
 
 bool PatchMesh::can_collapse(Index h) const {
   const Index g = opposite_[h];
-  if (g == none || on_rim(origin(h))) return false;
+  if (g == none || on_rim(origin(h)) || at_boundary(origin(h))) return false;
   const Index a = origin(h), b = target(h), c = apex(h), d = apex(g);
   if (c == d) return false;
   // Link condition: a and b have no common neighbours but c and d; and no triangle is left without a
@@ -152,7 +152,7 @@ bool PatchMesh::can_collapse(Index h) const {
   if (!clean || valence_a < 4) return false;
   // c and d lose a neighbour: inside they need three left, on the rim an edge that is not the boundary is
   // enough.
-  const auto can_lose_one = [&](Index v) { return valence(v) > (on_rim(v) ? 2u : 3u); };
+  const auto can_lose_one = [&](Index v) { return valence(v) > (at_boundary(v) ? 2u : 3u); };
   const bool side_c_stays = !(is_boundary(next(h)) && is_boundary(previous(h)));
   const bool side_d_stays = !(is_boundary(next(g)) && is_boundary(previous(g)));
   return side_c_stays && side_d_stays && can_lose_one(c) && can_lose_one(d);
@@ -173,18 +173,47 @@ void PatchMesh::collapse(Index h) {
   if (beyond_db != none) opposite_[beyond_db] = beyond_ad;
   triangles_[h / 3] = triangles_[g / 3] = {none, none, none};
   half_edge_of_[a] = none;
-  const auto dead = [&](Index half_edge) { return half_edge / 3 == h / 3 || half_edge / 3 == g / 3; };
   // beyond_ca runs a -> c, now b -> c; beyond_ad runs d -> a, now d -> b.
-  if (dead(half_edge_of_[b])) half_edge_of_[b] = beyond_ca;
-  if (dead(half_edge_of_[c])) half_edge_of_[c] = next(beyond_ca);
-  if (dead(half_edge_of_[d])) half_edge_of_[d] = beyond_ad;
-  for (Index v : {b, c, d}) {
-    // On the rim, turn back to the boundary edge where the fan starts.
-    if (!on_rim(v)) continue;
-    Index half_edge = half_edge_of_[v];
-    while (opposite_[half_edge] != none) half_edge = next(opposite_[half_edge]);
-    half_edge_of_[v] = half_edge;
+  const auto dead = [&](Index half_edge) { return half_edge / 3 == h / 3 || half_edge / 3 == g / 3; };
+  start_fan(b, dead(half_edge_of_[b]) ? beyond_ca : half_edge_of_[b]);
+  start_fan(c, dead(half_edge_of_[c]) ? next(beyond_ca) : half_edge_of_[c]);
+  start_fan(d, dead(half_edge_of_[d]) ? beyond_ad : half_edge_of_[d]);
+}
+
+// At the boundary a fan starts at the boundary: turns back to it from a half-edge that leaves the vertex.
+void PatchMesh::start_fan(Index vertex, Index half_edge) {
+  const Index first = half_edge;
+  while (opposite_[half_edge] != none) {
+    half_edge = next(opposite_[half_edge]);
+    if (half_edge == first) break;
   }
+  half_edge_of_[vertex] = half_edge;
+}
+
+bool PatchMesh::can_collapse_at_boundary(Index h, bool onto_target) const {
+  const Index gone = onto_target ? origin(h) : target(h), kept = onto_target ? target(h) : origin(h);
+  if (!is_boundary(h) || on_rim(gone)) return false;
+  // The other two sides of the triangle become one, which needs a triangle; and only its third corner may be
+  // a neighbour of both ends.
+  if (is_boundary(next(h)) || is_boundary(previous(h))) return false;
+  bool clean = true;
+  for_neighbours(gone, [&](Index v) { clean &= v == kept || v == apex(h) || !joined(v, kept); });
+  return clean && valence(apex(h)) > (at_boundary(apex(h)) ? 2u : 3u);
+}
+
+void PatchMesh::collapse_at_boundary(Index h, bool onto_target) {
+  const Index gone = onto_target ? origin(h) : target(h), kept = onto_target ? target(h) : origin(h);
+  const Index c = apex(h), dead = h / 3;
+  const Index beyond_bc = opposite_[next(h)], beyond_ca = opposite_[previous(h)];
+  std::vector<Index> around;
+  for_outgoing(gone, [&](Index out) { around.push_back(out); });
+  for (Index out : around) triangles_[out / 3][out % 3] = kept;
+  join(beyond_bc, beyond_ca);
+  triangles_[dead] = {none, none, none};
+  half_edge_of_[gone] = none;
+  // beyond_bc runs from c to an end of h, beyond_ca to c.
+  start_fan(kept, beyond_ca);
+  start_fan(c, beyond_bc);
 }
 
 void PatchMesh::compact() {

@@ -11,8 +11,10 @@
 namespace meshcomplete {
 
 /// A manifold triangulation with boundary. Vertices 0 to `rim_size() - 1` are the rim: they never move, are
-/// never removed, and the boundary edges between them are never split. Half-edge `3 * t + k` goes from corner
-/// k to corner k + 1 of triangle t. Removed vertices and triangles leave gaps until `compact` is called.
+/// never removed, and the boundary edges between them are never split. Only a patch in the making has other
+/// vertices at its boundary, until `collapse_at_boundary` has removed them. Half-edge `3 * t + k` goes from
+/// corner k to corner k + 1 of triangle t. Removed vertices and triangles leave gaps until `compact` is
+/// called.
 class PatchMesh {
  public:
   static constexpr Index none = 0xffffffffu;
@@ -23,6 +25,8 @@ class PatchMesh {
 
   std::size_t rim_size() const { return rim_size_; }
   bool on_rim(Index vertex) const { return vertex < rim_size_; }
+  /// On the rim, or one of the other vertices between rim vertices that a patch in the making may have.
+  bool at_boundary(Index vertex) const { return opposite_[half_edge_of_[vertex]] == none; }
   std::size_t vertex_count() const { return positions_.size(); }    ///< with gaps
   std::size_t triangle_count() const { return triangles_.size(); }  ///< with gaps
   bool alive(Index triangle) const { return triangles_[triangle][0] != none; }
@@ -87,12 +91,19 @@ class PatchMesh {
   /// Removes the origin of an inner edge and its two triangles. Requires `can_collapse`.
   void collapse(Index half_edge);
 
+  /// Whether a boundary half-edge can be removed by moving its origin (`onto_target`, else its target), which
+  /// is not on the rim, onto its other end (link condition).
+  bool can_collapse_at_boundary(Index half_edge, bool onto_target) const;
+  /// Removes that end and the triangle at the half-edge. Requires `can_collapse_at_boundary`.
+  void collapse_at_boundary(Index half_edge, bool onto_target);
+
   /// Closes the gaps. Rim vertices keep their numbers, the others their order.
   void compact();
 
  private:
   void connect();
   void join(Index half_edge, Index other);
+  void start_fan(Index vertex, Index half_edge);
 
   std::size_t rim_size_;
   std::vector<Vector3> positions_;

@@ -55,7 +55,7 @@ class GapFinder {
     for (const Triangle& t : rim.ring.triangles)
       for (int k = 0; k < 3; ++k) {
         const Index a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
-        if (a >= n || b >= n || a != (b + 1) % n) continue;
+        if (a >= n || b >= n || a != rim.next[b]) continue;
         const auto& p = rim.ring.vertices;
         rim_normals_[b] = (p[b] - p[a]).cross(p[c] - p[a]).stableNormalized();
       }

@@ -39,12 +39,13 @@ std::vector<Index> ring_faces(const TriangleMesh& mesh, const MeshTopology& topo
   return faces;
 }
 
-void smooth_cyclic(std::vector<double>& values) {
-  const std::size_t n = values.size();
+void smooth_along(const std::vector<Index>& next, std::vector<double>& values) {
+  std::vector<double> before(values.size());
   for (int round = 0; round < length_smoothing_rounds; ++round) {
     const std::vector<double> old = values;
-    for (std::size_t i = 0; i < n; ++i)
-      values[i] = 0.25 * old[(i + n - 1) % n] + 0.5 * old[i] + 0.25 * old[(i + 1) % n];
+    for (std::size_t i = 0; i < values.size(); ++i) before[next[i]] = old[i];
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = 0.25 * before[i] + 0.5 * old[i] + 0.25 * old[next[i]];
   }
 }
 
@@ -76,39 +77,65 @@ std::vector<Index> obstructed_edges(const InputNeighbourhood& input, const Bound
 }
 
 Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop) {
-  Rim rim;
-  const Index n = static_cast<Index>(loop.vertices.size());
-  std::unordered_map<Index, Index> number;  // in the ring
-  const auto local = [&](Index v) {
-    const auto [it, fresh] = number.try_emplace(v, static_cast<Index>(rim.ring.vertices.size()));
-    if (fresh) rim.ring.vertices.push_back(mesh.vertices[v]);
-    return it->second;
-  };
-  for (Index v : loop.vertices) local(v);
-  rim.positions = rim.ring.vertices;
+  return collect_rim(mesh, topology, std::vector<BoundaryLoop>{loop});
+}
 
-  std::vector<double> sum(n, 0.0);
-  std::vector<int> count(n, 0);
-  for (Index face : ring_faces(mesh, topology, loop)) {
+Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology,
+                const std::vector<BoundaryLoop>& loops) {
+  Rim rim;
+  std::unordered_map<Index, Index> number;               // in the ring
+  std::unordered_map<Index, std::vector<Index>> places;  // of rim vertices
+  std::vector<Index> faces;
+  for (const BoundaryLoop& loop : loops) {
+    const Index first = static_cast<Index>(rim.positions.size()),
+                n = static_cast<Index>(loop.vertices.size());
+    for (Index i = 0; i < n; ++i) {
+      const Index v = loop.vertices[i];
+      number.try_emplace(v, first + i);
+      places[v].push_back(first + i);
+      rim.positions.push_back(mesh.vertices[v]);
+      rim.next.push_back(first + (i + 1) % n);
+    }
+    const std::vector<Index> ring = ring_faces(mesh, topology, loop);
+    faces.insert(faces.end(), ring.begin(), ring.end());
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  rim.ring.vertices = rim.positions;
+  const Index rim_size = static_cast<Index>(rim.positions.size());
+  std::vector<double> sum(rim_size, 0.0);
+  std::vector<int> count(rim_size, 0);
+  for (Index face : faces) {
     const Triangle& t = mesh.triangles[face];
-    const Triangle corners = {local(t[0]), local(t[1]), local(t[2])};
+    Triangle corners;
+    for (int k = 0; k < 3; ++k) {
+      const auto [it, fresh] = number.try_emplace(t[k], static_cast<Index>(rim.ring.vertices.size()));
+      if (fresh) rim.ring.vertices.push_back(mesh.vertices[t[k]]);
+      corners[k] = it->second;
+    }
     rim.ring.triangles.push_back(corners);
     for (int k = 0; k < 3; ++k) {
-      const Index a = corners[k], b = corners[(k + 1) % 3];
-      const double length = (rim.ring.vertices[a] - rim.ring.vertices[b]).norm();
-      for (Index v : {a, b})
-        if (v < n) {
-          sum[v] += length;
-          ++count[v];
+      const Index v = t[k], w = t[(k + 1) % 3];
+      const double length = (mesh.vertices[v] - mesh.vertices[w]).norm();
+      const auto at_v = places.find(v), at_w = places.find(w);
+      for (const auto& at : {at_v, at_w}) {
+        if (at == places.end()) continue;
+        for (Index place : at->second) {
+          sum[place] += length;
+          ++count[place];
         }
-      const bool neighbours = (a + 1) % n == b || (b + 1) % n == a;
-      if (a < n && b < n && !neighbours) rim.forbidden.emplace_back(std::min(a, b), std::max(a, b));
+      }
+      if (at_v == places.end() || at_w == places.end()) continue;
+      for (Index a : at_v->second)
+        for (Index b : at_w->second)
+          if (rim.next[a] != b && rim.next[b] != a)
+            rim.forbidden.emplace_back(std::min(a, b), std::max(a, b));
     }
   }
   std::sort(rim.forbidden.begin(), rim.forbidden.end());
   rim.forbidden.erase(std::unique(rim.forbidden.begin(), rim.forbidden.end()), rim.forbidden.end());
-  for (Index v = 0; v < n; ++v) rim.edge_length.push_back(sum[v] / std::max(count[v], 1));
-  smooth_cyclic(rim.edge_length);
+  for (Index v = 0; v < rim_size; ++v) rim.edge_length.push_back(sum[v] / std::max(count[v], 1));
+  smooth_along(rim.next, rim.edge_length);
   return rim;
 }
 

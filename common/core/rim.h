@@ -12,17 +12,25 @@
 namespace meshcomplete {
 
 struct Rim {
-  std::vector<Vector3> positions;  ///< of the loop's vertices, in its order
+  std::vector<Vector3>
+      positions;            ///< of the loop's vertices, in its order; of several loops one after the other
+  std::vector<Index> next;  ///< the position in `positions` that follows along the loop
   /// The faces in the fans between the loop's edges (the one-ring), as a mesh of its own whose first vertices
   /// are the loop's in its order.
   TriangleMesh ring;
   std::vector<double>
       edge_length;  ///< per loop vertex: mean length of the ring's edges near it, the resolution to match
-  ForbiddenEdges forbidden;  ///< positions in the loop of vertices that an input edge joins
+  ForbiddenEdges
+      forbidden;  ///< places in `positions` of vertices that an input edge joins, neighbours left out
 };
 
 /// Cost: O(faces of the ring).
 Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology, const BoundaryLoop& loop);
+
+/// The rim of a hole with several loops. A vertex that they visit twice is in `positions` twice; the ring's
+/// faces at it use its first place.
+Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology,
+                const std::vector<BoundaryLoop>& loops);
 
 /// Whether the input comes between two of its vertices: a triangle without a corner at either end meets the
 /// segment. Exact. Cost: O(log faces + triangles whose box meets that of the segment), until the first one is
