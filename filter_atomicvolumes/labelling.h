@@ -1,0 +1,35 @@
+// Which atomic volumes are inside: the minimum cut of the graph of volumes.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "common/core/graph_cut.h"
+#include "common/core/progress.h"
+#include "filter_atomicvolumes/atomic_volumes.h"
+#include "filter_atomicvolumes/volume_complex.h"
+
+namespace meshcomplete {
+
+/// What pulls a node to a side beyond the faces: constraints, hints.
+struct NodeTie {
+  Cell node;
+  bool inside;
+  double price;  ///< mesh units squared; infinite for a constraint
+};
+
+struct Labelling {
+  std::vector<char> inside;  ///< per node
+  double weight = 0;  ///< of the cut: mesh units squared for areas, a number of faces for the unit weight
+
+  bool is_inside(Cell cell) const {
+    return cell >= 0 ? inside[static_cast<std::size_t>(cell)] : cell == inside_cell;
+  }
+};
+
+/// The labelling of least weight. Source: the paper's section 4. Faces beside unknown volumes cost nothing.
+/// Cost: that of the minimum cut, near-linear in practice.
+Labelling cut_complex(const LatticeMesh& mesh, const VolumeComplex& complex, CutWeight weight,
+                      const std::vector<NodeTie>& ties, const Progress& progress = Progress());
+
+}  // namespace meshcomplete

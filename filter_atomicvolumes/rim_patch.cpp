@@ -1,0 +1,274 @@
+#include "filter_atomicvolumes/rim_patch.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+namespace meshcomplete {
+namespace {
+
+constexpr Index none = PatchMesh::none;
+
+// Passes over the Steiner points that are left: removing some makes room for others.
+constexpr int most_passes = 8;
+
+// Where on the way from a Steiner point to its neighbours their edges are split.
+constexpr double shrinking = 0.3;
+
+// A sheet's boundary, walked as its triangles walk it: vertices of the sheet.
+std::vector<std::vector<Index>> boundary_walks(const Sheet& sheet) {
+  std::unordered_map<std::uint64_t, char> sides;
+  const auto key = [](Index a, Index b) { return static_cast<std::uint64_t>(a) << 32 | b; };
+  for (const Triangle& t : sheet.triangles)
+    for (int k = 0; k < 3; ++k) sides[key(t[k], t[(k + 1) % 3])] = 1;
+  std::vector<Index> next(sheet.vertices.size(), none);
+  for (const Triangle& t : sheet.triangles)
+    for (int k = 0; k < 3; ++k)
+      if (!sides.count(key(t[(k + 1) % 3], t[k]))) next[t[k]] = t[(k + 1) % 3];
+  std::vector<std::vector<Index>> walks;
+  std::vector<char> seen(sheet.vertices.size(), 0);
+  for (Index start = 0; start < sheet.vertices.size(); ++start) {
+    // Begin at a vertex of the mesh: the Steiner points between two are left out of the loops.
+    if (next[start] == none || seen[start] || sheet.vertices[start].input == SheetVertex::none) continue;
+    walks.emplace_back();
+    for (Index v = start; !seen[v]; v = next[v]) {
+      seen[v] = 1;
+      walks.back().push_back(v);
+    }
+  }
+  return walks;
+}
+
+// The mesh's boundary half-edges by the vertex at their end: patches walk them the other way.
+std::unordered_map<std::uint64_t, Index> faces_at_boundary(const TriangleMesh& mesh,
+                                                           const std::vector<Index>& closes) {
+  std::unordered_map<std::uint64_t, Index> faces;
+  for (Index h : closes) {
+    const Triangle& t = mesh.triangles[h / 3];
+    faces[static_cast<std::uint64_t>(t[(h % 3 + 1) % 3]) << 32 | t[h % 3]] = h / 3;
+  }
+  return faces;
+}
+
+class SteinerRemover {
+ public:
+  SteinerRemover(RimPatch& patch, const InputNeighbourhood& input,
+                 const std::vector<std::array<Vector3, 3>>& obstacles)
+      : patch_(patch), mesh_(patch.mesh), guarded_(patch.mesh, input, patch.rim.forbidden, obstacles) {
+    find_edges();
+  }
+
+  std::size_t run(const Progress& progress);
+
+ private:
+  void find_edges();
+  Index leaving_along_boundary(Index vertex) const;
+  Index arriving_along_boundary(Index vertex) const;
+  bool on_edge(Index vertex, Index edge) const {
+    return mesh_.on_rim(vertex) ? vertex == edge || vertex == patch_.rim.next[edge]
+                                : edge_of_[vertex] == edge;
+  }
+  bool makes_chord(Index gone, Index kept) const;
+  bool collapse(Index steiner);
+  bool flip_one(Index steiner);
+  void shrink_fan(Index steiner);
+
+  RimPatch& patch_;
+  PatchMesh& mesh_;
+  GuardedPatch guarded_;
+  std::vector<Index> steiner_;
+  std::vector<Index> edge_of_;   // of each Steiner point: the place in the rim where its boundary edge begins
+  std::vector<Index> previous_;  // along the rim
+};
+
+Index SteinerRemover::leaving_along_boundary(Index vertex) const {
+  Index found = none;
+  mesh_.for_outgoing(vertex, [&](Index out) {
+    if (mesh_.is_boundary(out)) found = out;
+  });
+  return found;
+}
+
+Index SteinerRemover::arriving_along_boundary(Index vertex) const {
+  Index found = none;
+  mesh_.for_outgoing(vertex, [&](Index out) {
+    if (mesh_.is_boundary(PatchMesh::previous(out))) found = PatchMesh::previous(out);
+  });
+  return found;
+}
+
+void SteinerRemover::find_edges() {
+  edge_of_.assign(mesh_.vertex_count(), none);
+  previous_.resize(mesh_.rim_size());
+  for (Index place = 0; place < mesh_.rim_size(); ++place) {
+    previous_[patch_.rim.next[place]] = place;
+    for (Index v = mesh_.target(leaving_along_boundary(place)); !mesh_.on_rim(v);
+         v = mesh_.target(leaving_along_boundary(v))) {
+      edge_of_[v] = place;
+      steiner_.push_back(v);
+      guarded_.rest(v, patch_.rim_faces[place]);
+    }
+  }
+}
+
+// Whether an edge would join two points of one boundary edge of the mesh without being part of it. The
+// point's two neighbours along the boundary go on being such.
+bool SteinerRemover::makes_chord(Index gone, Index kept) const {
+  bool chord = false;
+  mesh_.for_outgoing(gone, [&](Index out) {
+    const Index v = mesh_.target(out);
+    if (v == kept || mesh_.is_boundary(out) || !mesh_.at_boundary(v)) return;
+    if (mesh_.on_rim(kept))
+      chord |= on_edge(v, kept) || on_edge(v, previous_[kept]);
+    else
+      chord |= on_edge(v, edge_of_[kept]);
+  });
+  return chord;
+}
+
+bool SteinerRemover::collapse(Index steiner) {
+  const Index out = leaving_along_boundary(steiner), in = arriving_along_boundary(steiner);
+  const bool forward_first = mesh_.length(out) < mesh_.length(in);
+  for (bool forward : {forward_first, !forward_first}) {
+    const Index kept = forward ? mesh_.target(out) : mesh_.origin(in);
+    if (!makes_chord(steiner, kept) && guarded_.collapse_at_boundary(forward ? out : in, forward))
+      return true;
+  }
+  return false;
+}
+
+// Takes an inner edge away from the point: with a single one left its two triangles are one but for rounding.
+bool SteinerRemover::flip_one(Index steiner) {
+  std::vector<Index> edges;
+  mesh_.for_outgoing(steiner, [&](Index out) {
+    if (!mesh_.is_boundary(out)) edges.push_back(out);
+  });
+  if (edges.size() < 2) return false;
+  for (Index h : edges) {
+    const Index c = mesh_.apex(h), d = mesh_.apex(mesh_.opposite(h));
+    const auto edge = [&](Index v) { return mesh_.on_rim(v) ? v : edge_of_[v]; };
+    if (mesh_.at_boundary(c) && mesh_.at_boundary(d)) {
+      const Index e = edge(c), f = edge(d);
+      if (on_edge(c, f) || on_edge(d, e) || (mesh_.on_rim(c) && on_edge(d, previous_[c]))) continue;
+    }
+    if (guarded_.flip(h)) return true;
+  }
+  return false;
+}
+
+// Splits the inner edges near the point: small triangles sweep over less when it moves along the rim, and a
+// neighbour that it shares with the end of its edge is none any more.
+void SteinerRemover::shrink_fan(Index steiner) {
+  std::vector<Index> neighbours;
+  mesh_.for_outgoing(steiner, [&](Index out) {
+    if (!mesh_.is_boundary(out)) neighbours.push_back(mesh_.target(out));
+  });
+  for (Index v : neighbours) {
+    Index h = none;
+    mesh_.for_outgoing(steiner, [&](Index out) {
+      if (mesh_.target(out) == v) h = out;
+    });
+    if (h == none) continue;
+    const Vector3& here = mesh_.position(steiner);
+    guarded_.split(h, here + shrinking * (mesh_.position(v) - here));
+  }
+}
+
+std::size_t SteinerRemover::run(const Progress& progress) {
+  for (int pass = 0; pass < most_passes && !steiner_.empty(); ++pass) {
+    std::vector<Index> left;
+    for (Index steiner : steiner_) {
+      bool gone = collapse(steiner);
+      // Flips only when collapses alone have come to an end, and new vertices only when flips have.
+      for (bool flipped = pass > 0; !gone && flipped;) {
+        flipped = flip_one(steiner);
+        gone = flipped && collapse(steiner);
+      }
+      if (!gone && pass > 1) {
+        shrink_fan(steiner);
+        gone = collapse(steiner);
+      }
+      if (!gone) left.push_back(steiner);
+      progress.check();
+    }
+    steiner_ = std::move(left);
+  }
+  return steiner_.size();
+}
+
+}  // namespace
+
+RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, const Sheet& sheet) {
+  const auto faces = faces_at_boundary(mesh, sheet.closes);
+  std::vector<BoundaryLoop> loops;
+  std::vector<Index> rim_vertices, rim_faces, order, local(sheet.vertices.size(), none);
+  for (const std::vector<Index>& walk : boundary_walks(sheet)) {
+    BoundaryLoop loop;
+    for (Index v : walk) {
+      if (sheet.vertices[v].input == SheetVertex::none) continue;
+      local[v] = static_cast<Index>(order.size());
+      order.push_back(v);
+      loop.vertices.push_back(sheet.vertices[v].input);
+    }
+    for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+      const Index from = loop.vertices[i], to = loop.vertices[(i + 1) % loop.vertices.size()];
+      loop.faces.push_back(faces.at(static_cast<std::uint64_t>(from) << 32 | to));
+    }
+    rim_vertices.insert(rim_vertices.end(), loop.vertices.begin(), loop.vertices.end());
+    rim_faces.insert(rim_faces.end(), loop.faces.begin(), loop.faces.end());
+    loops.push_back(std::move(loop));
+  }
+  for (Index v = 0; v < local.size(); ++v)
+    if (local[v] == none) {
+      local[v] = static_cast<Index>(order.size());
+      order.push_back(v);
+    }
+  // What will stay is rounded to what will be stored; Steiner points are as exact as they can be.
+  std::vector<Vector3> positions;
+  for (Index v : order) {
+    const SheetVertex& one = sheet.vertices[v];
+    positions.push_back(one.input == SheetVertex::none && one.rim_edge == SheetVertex::none
+                            ? as_stored(one.position)
+                            : one.position);
+  }
+  std::vector<Triangle> triangles = sheet.triangles;
+  for (Triangle& t : triangles)
+    for (Index& corner : t) corner = local[corner];
+  Rim rim = collect_rim(mesh, topology, loops);
+  const std::size_t rim_size = rim_vertices.size();
+  return {std::move(loops),
+          std::move(rim_vertices),
+          std::move(rim_faces),
+          std::move(rim),
+          PatchMesh(std::move(positions), rim_size, std::move(triangles)),
+          sheet.volumes,
+          0};
+}
+
+std::size_t remove_steiner_points(RimPatch& patch, const InputNeighbourhood& input,
+                                  const std::vector<std::array<Vector3, 3>>& obstacles,
+                                  const Progress& progress) {
+  patch.steiner_points = SteinerRemover(patch, input, obstacles).run(progress);
+  return patch.steiner_points;
+}
+
+Patch as_patch(const RimPatch& patch, const TriangleMesh& mesh) {
+  Patch result;
+  result.input_vertices = static_cast<Index>(mesh.vertices.size());
+  const Index rim_size = static_cast<Index>(patch.mesh.rim_size());
+  std::vector<Index> number(patch.mesh.vertex_count(), none);
+  for (Index v = 0; v < rim_size; ++v) number[v] = patch.rim_vertices[v];
+  for (Index v = rim_size; v < patch.mesh.vertex_count(); ++v) {
+    if (!patch.mesh.vertex_alive(v)) continue;
+    number[v] = result.input_vertices + static_cast<Index>(result.vertices.size());
+    result.vertices.push_back(as_stored(patch.mesh.position(v)));
+  }
+  for (Index t = 0; t < patch.mesh.triangle_count(); ++t) {
+    if (!patch.mesh.alive(t)) continue;
+    const Triangle& corners = patch.mesh.triangles()[t];
+    result.triangles.push_back({number[corners[0]], number[corners[1]], number[corners[2]]});
+  }
+  return result;
+}
+
+}  // namespace meshcomplete

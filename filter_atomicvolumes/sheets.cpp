@@ -1,0 +1,310 @@
+#include "filter_atomicvolumes/sheets.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+namespace meshcomplete {
+namespace {
+
+constexpr Index none = VolumeVertex::none;
+
+// The doubles of a vertex move by this part of the shortest edge at it.
+constexpr double separation = 0.1;
+
+// One side of a triangle, from `low` to `high` when `forward`.
+struct FaceSide {
+  Index low, high, half_edge;  // `half_edge` is 3 * triangle + k; `none` for the mesh's own triangle at a rim
+  bool forward;
+  double angle = 0;
+  bool operator<(const FaceSide& o) const {
+    return std::tie(low, high, half_edge) < std::tie(o.low, o.high, o.half_edge);
+  }
+};
+
+class Splitter {
+ public:
+  Splitter(const TriangleMesh& mesh, const MeshTopology& topology, const LabelledSurface& surface)
+      : mesh_(mesh),
+        topology_(topology),
+        surface_(surface),
+        parent_(3 * surface.triangles.size()),
+        partner_(parent_.size(), none),
+        rim_(parent_.size(), none) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+
+  std::vector<Sheet> run();
+
+ private:
+  void index_rim_edges();
+  void pair_sides();
+  void pair_at_edge(std::vector<FaceSide>& sides);
+  Index rim_edge(Index from, Index to) const;
+  void sort_by_angle(std::vector<FaceSide>& sides, Index rim) const;
+  void join(const FaceSide& a, const FaceSide& b);
+  void unite(Index a, Index b) { parent_[root(a)] = root(b); }
+  Index root(Index corner) {
+    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
+    return corner;
+  }
+  Index vertex(Index half_edge) const { return surface_.triangles[half_edge / 3][half_edge % 3]; }
+  static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  void number_fans();
+  void add_midpoints();
+  void separate_doubles();
+  std::vector<Sheet> pieces() const;
+
+  const TriangleMesh& mesh_;
+  const MeshTopology& topology_;
+  const LabelledSurface& surface_;
+  std::vector<Index> parent_;   // of corners: those of one fan hang together
+  std::vector<Index> partner_;  // the half-edge at the other side of an edge
+  std::vector<Index> rim_;      // the mesh's boundary half-edge at a half-edge of the patch
+  std::unordered_map<std::uint64_t, Index> boundary_;  // by its two vertices
+  // The surface taken apart.
+  std::vector<SheetVertex> vertices_;
+  std::vector<Triangle> triangles_;
+  std::vector<LabelledSurface::Between> volumes_;
+  std::vector<char> doubled_;
+};
+
+std::uint64_t pair_key(Index a, Index b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+}
+
+void Splitter::index_rim_edges() {
+  for (Index h : topology_.boundary_half_edges) {
+    const Triangle& t = mesh_.triangles[h / 3];
+    boundary_.emplace(pair_key(t[h % 3], t[(h % 3 + 1) % 3]), h);
+  }
+}
+
+// The mesh's boundary half-edge on which the edge lies.
+Index Splitter::rim_edge(Index from, Index to) const {
+  const VolumeVertex &a = surface_.vertices[from], &b = surface_.vertices[to];
+  const auto on_rim = [](const VolumeVertex& v) { return v.input != none || v.rim_edge != none; };
+  if (!on_rim(a) || !on_rim(b)) return none;
+  if (a.input != none && b.input != none) {
+    const auto found = boundary_.find(pair_key(a.input, b.input));
+    return found == boundary_.end() ? none : found->second;
+  }
+  const Index edge = a.rim_edge != none ? a.rim_edge : b.rim_edge;
+  const Triangle& t = mesh_.triangles[edge / 3];
+  const auto belongs = [&](const VolumeVertex& v) {
+    return v.rim_edge == edge || v.input == t[edge % 3] || v.input == t[(edge % 3 + 1) % 3];
+  };
+  return belongs(a) && belongs(b) ? edge : none;
+}
+
+// By the angle round the edge, from its lower vertex to its higher.
+void Splitter::sort_by_angle(std::vector<FaceSide>& sides, Index rim) const {
+  const Vector3& low = surface_.vertices[sides.front().low].position;
+  const Vector3 axis = (surface_.vertices[sides.front().high].position - low).normalized();
+  Vector3 zero = axis.unitOrthogonal();
+  const Vector3 quarter = axis.cross(zero);
+  for (FaceSide& side : sides) {
+    const Vector3 apex = side.half_edge == none
+                             ? mesh_.vertices[mesh_.triangles[rim / 3][(rim % 3 + 2) % 3]]
+                             : surface_.vertices[vertex(next(next(side.half_edge)))].position;
+    side.angle = std::atan2((apex - low).dot(quarter), (apex - low).dot(zero));
+  }
+  std::sort(sides.begin(), sides.end(), [](const FaceSide& a, const FaceSide& b) {
+    return std::tie(a.angle, a.half_edge) < std::tie(b.angle, b.half_edge);
+  });
+}
+
+void Splitter::join(const FaceSide& a, const FaceSide& b) {
+  if (a.half_edge == none || b.half_edge == none) return;
+  partner_[a.half_edge] = b.half_edge;
+  partner_[b.half_edge] = a.half_edge;
+  unite(a.half_edge, next(b.half_edge));
+  unite(next(a.half_edge), b.half_edge);
+}
+
+// The inside lies behind a face, which is before it, turning about the edge, when the face goes along the
+// edge forward. So an inside sector begins at a face that goes backward and ends at the next one.
+void Splitter::pair_at_edge(std::vector<FaceSide>& sides) {
+  const Index rim = rim_edge(sides.front().low, sides.front().high);
+  std::size_t forward = 0;
+  for (const FaceSide& side : sides) forward += side.forward;
+  if (rim != none && 2 * forward != sides.size()) {
+    FaceSide own{sides.front().low, sides.front().high, none, 2 * forward < sides.size(), 0};
+    for (const FaceSide& side : sides) rim_[side.half_edge] = rim;
+    sides.push_back(own);
+  }
+  if (sides.size() > 2) sort_by_angle(sides, rim);
+  std::vector<char> taken(sides.size(), 0);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (sides[i].forward || taken[i]) continue;
+    for (std::size_t step = 1; step < sides.size(); ++step) {
+      const std::size_t j = (i + step) % sides.size();
+      if (!sides[j].forward || taken[j]) continue;
+      taken[i] = taken[j] = 1;
+      join(sides[i], sides[j]);
+      break;
+    }
+  }
+  for (const FaceSide& side : sides)
+    if (side.half_edge != none && partner_[side.half_edge] != none) rim_[side.half_edge] = none;
+}
+
+void Splitter::pair_sides() {
+  std::vector<FaceSide> all;
+  for (Index h = 0; h < partner_.size(); ++h) {
+    const Index a = vertex(h), b = vertex(next(h));
+    all.push_back({std::min(a, b), std::max(a, b), h, a < b, 0});
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<FaceSide> sides;
+  for (std::size_t i = 0; i < all.size();) {
+    sides.clear();
+    for (const std::size_t first = i;
+         i < all.size() && all[i].low == all[first].low && all[i].high == all[first].high; ++i)
+      sides.push_back(all[i]);
+    pair_at_edge(sides);
+  }
+}
+
+// A vertex for every fan. On the rim the fans that end there keep what the vertex is.
+void Splitter::number_fans() {
+  std::vector<char> at_rim(parent_.size(), 0);
+  for (Index h = 0; h < parent_.size(); ++h)
+    if (partner_[h] == none) at_rim[root(h)] = at_rim[root(next(h))] = 1;
+  std::vector<Index> number(parent_.size(), none);
+  std::vector<char> seen(surface_.vertices.size(), 0);
+  triangles_.resize(surface_.triangles.size());
+  volumes_ = surface_.volumes;
+  for (Index corner = 0; corner < parent_.size(); ++corner) {
+    const Index fan = root(corner), v = vertex(corner);
+    if (number[fan] == none) {
+      number[fan] = static_cast<Index>(vertices_.size());
+      const VolumeVertex& original = surface_.vertices[v];
+      const bool on_rim = original.input != none || original.rim_edge != none;
+      SheetVertex one{original.position, none, none};
+      if (at_rim[fan]) {
+        one.input = original.input;
+        one.rim_edge = original.rim_edge;
+      }
+      vertices_.push_back(one);
+      doubled_.push_back(!at_rim[fan] && (on_rim || seen[v]));
+      seen[v] = 1;
+    }
+    triangles_[corner / 3][corner % 3] = number[fan];
+  }
+}
+
+// Vertices that were doubled retreat into their own inside.
+void Splitter::separate_doubles() {
+  std::vector<Vector3> normal(vertices_.size(), Vector3::Zero());
+  std::vector<double> shortest(vertices_.size(), std::numeric_limits<double>::infinity());
+  for (const Triangle& t : triangles_) {
+    const Vector3 &a = vertices_[t[0]].position, &b = vertices_[t[1]].position, &c = vertices_[t[2]].position;
+    const Vector3 area = (b - a).cross(c - a);
+    for (int k = 0; k < 3; ++k) {
+      normal[t[k]] += area;
+      const double length = (vertices_[t[(k + 1) % 3]].position - vertices_[t[k]].position).norm();
+      shortest[t[k]] = std::min(shortest[t[k]], length);
+      shortest[t[(k + 1) % 3]] = std::min(shortest[t[(k + 1) % 3]], length);
+    }
+  }
+  for (std::size_t v = 0; v < vertices_.size(); ++v)
+    if (doubled_[v] && normal[v].norm() > 0)
+      vertices_[v].position -= separation * shortest[v] * normal[v].normalized();
+}
+
+// Two sheets that share both ends of an edge, because neither end is doubled, get different middles.
+void Splitter::add_midpoints() {
+  std::unordered_map<std::uint64_t, int> uses;
+  std::vector<Index> extra;
+  for (Index h = 0; h < partner_.size(); ++h) {
+    const Index a = triangles_[h / 3][h % 3], b = triangles_[h / 3][next(h) % 3];
+    if (partner_[h] != none && partner_[h] < h) continue;
+    if (uses[pair_key(a, b)]++ > 0 && partner_[h] != none) extra.push_back(h);
+  }
+  for (Index h : extra) {
+    const Index middle = static_cast<Index>(vertices_.size());
+    const Index other = partner_[h];
+    // A triangle whose side was split already is not the one of this half-edge any more.
+    const Index a = triangles_[h / 3][h % 3], b = triangles_[h / 3][next(h) % 3];
+    if (triangles_[other / 3][other % 3] != b || triangles_[other / 3][next(other) % 3] != a) continue;
+    vertices_.push_back({0.5 * (vertices_[a].position + vertices_[b].position), none, none});
+    doubled_.push_back(1);
+    for (Index side : {h, other}) {
+      Triangle& t = triangles_[side / 3];
+      Triangle half = t;
+      half[side % 3] = middle;
+      t[next(side) % 3] = middle;
+      triangles_.push_back(half);
+      volumes_.push_back(LabelledSurface::Between(volumes_[side / 3]));
+    }
+  }
+}
+
+std::vector<Sheet> Splitter::pieces() const {
+  std::vector<Index> parent(vertices_.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto find = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : triangles_)
+    for (int k = 1; k < 3; ++k) parent[find(t[k])] = find(t[0]);
+  std::vector<Sheet> sheets;
+  std::vector<Index> sheet_of(vertices_.size(), none), local(vertices_.size(), none);
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const Index top = find(triangles_[i][0]);
+    if (sheet_of[top] == none) {
+      sheet_of[top] = static_cast<Index>(sheets.size());
+      sheets.emplace_back();
+    }
+    Sheet& sheet = sheets[sheet_of[top]];
+    Triangle t;
+    for (int k = 0; k < 3; ++k) {
+      Index& number = local[triangles_[i][k]];
+      if (number == none) {
+        number = static_cast<Index>(sheet.vertices.size());
+        sheet.vertices.push_back(vertices_[triangles_[i][k]]);
+      }
+      t[k] = number;
+    }
+    sheet.triangles.push_back(t);
+    sheet.volumes.push_back(volumes_[i]);
+  }
+  for (Index h = 0; h < partner_.size(); ++h) {
+    if (partner_[h] != none) continue;
+    Sheet& sheet = sheets[sheet_of[find(triangles_[h / 3][h % 3])]];
+    if (rim_[h] == none)
+      sheet.whole = false;
+    else
+      sheet.closes.push_back(rim_[h]);
+  }
+  for (Sheet& sheet : sheets) {
+    std::sort(sheet.closes.begin(), sheet.closes.end());
+    sheet.closes.erase(std::unique(sheet.closes.begin(), sheet.closes.end()), sheet.closes.end());
+  }
+  return sheets;
+}
+
+std::vector<Sheet> Splitter::run() {
+  index_rim_edges();
+  pair_sides();
+  number_fans();
+  add_midpoints();
+  separate_doubles();
+  return pieces();
+}
+
+}  // namespace
+
+std::vector<Sheet> split_into_sheets(const TriangleMesh& mesh, const MeshTopology& topology,
+                                     const LabelledSurface& surface) {
+  return Splitter(mesh, topology, surface).run();
+}
+
+}  // namespace meshcomplete

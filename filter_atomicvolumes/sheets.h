@@ -1,0 +1,36 @@
+// Where volumes only touch, their surfaces are taken apart: every edge gets two faces, every vertex one fan.
+#pragma once
+
+#include <vector>
+
+#include "common/core/mesh.h"
+#include "common/core/mesh_topology.h"
+#include "filter_atomicvolumes/extraction.h"
+
+namespace meshcomplete {
+
+/// A vertex of a patch in the making.
+struct SheetVertex {
+  static constexpr Index none = VolumeVertex::none;
+  Vector3 position;
+  Index input = none;     ///< the boundary vertex that it is
+  Index rim_edge = none;  ///< the boundary half-edge whose Steiner point it is
+};
+
+/// One connected piece of the patch, manifold, with its boundary on the rims.
+struct Sheet {
+  std::vector<SheetVertex> vertices;  ///< a boundary vertex that the piece visits twice is there twice
+  std::vector<Triangle> triangles;
+  std::vector<LabelledSurface::Between> volumes;  ///< of each triangle
+  /// Boundary half-edges of the mesh that it closes, ascending. Empty for a piece without a rim.
+  std::vector<Index> closes;
+  bool whole = true;  ///< false when its boundary does not lie on rims: a cube there could not be resolved
+};
+
+/// The pieces of a labelled surface. Round an edge with more than two faces (the mesh's own triangle counts
+/// at a rim) those that bound one inside sector belong together; vertices are doubled for every fan, and the
+/// doubles move into their own inside by a small part of their edges. Cost: O(n log n) for n triangles.
+std::vector<Sheet> split_into_sheets(const TriangleMesh& mesh, const MeshTopology& topology,
+                                     const LabelledSurface& surface);
+
+}  // namespace meshcomplete
