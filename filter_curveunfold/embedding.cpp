@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/patch_fairing.h"
 #include "common/core/patch_mesh.h"
 #include "common/core/patch_remeshing.h"
 
@@ -29,32 +30,6 @@ double triangles_to_cover(const std::vector<Vector3>& positions, const std::vect
     count += 0.5 * normal.norm() / (0.25 * std::sqrt(3.0) * side * side);
   }
   return count;
-}
-
-// The patch's triangles, followed by the ring's when the energy looks across the rim.
-TriangleMesh with_ring(const PatchMesh& patch, const Rim& rim, std::vector<char>& fixed) {
-  const Index rim_size = static_cast<Index>(patch.rim_size());
-  TriangleMesh surface{patch.positions(), patch.triangles()};
-  const Index offset = static_cast<Index>(surface.vertices.size()) - rim_size;
-  surface.vertices.insert(surface.vertices.end(), rim.ring.vertices.begin() + rim_size,
-                          rim.ring.vertices.end());
-  for (Triangle t : rim.ring.triangles) {
-    for (Index& corner : t)
-      if (corner >= rim_size) corner += offset;
-    surface.triangles.push_back(t);
-  }
-  fixed.assign(surface.vertices.size(), 1);
-  std::fill(fixed.begin() + rim_size, fixed.begin() + static_cast<std::ptrdiff_t>(patch.vertex_count()), 0);
-  return surface;
-}
-
-void solve(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeights weights,
-           const Progress& progress) {
-  std::vector<char> fixed;
-  TriangleMesh surface = with_ring(patch, rim, fixed);
-  minimize_energy(surface, fixed, energy, weights, progress);
-  for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
-    patch.move(v, surface.vertices[v]);
 }
 
 }  // namespace
@@ -89,12 +64,12 @@ PatchMesh embed(const Rim& rim, const std::vector<Triangle>& flat, const Embeddi
   if (patch.vertex_count() > patch.rim_size()) {
     // The embedded flat triangulation is creased along its chords; the membrane with uniform weights, which
     // cannot fold more than its rim, is a safe start for everything that looks at angles.
-    solve(patch, rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
+    fair(patch, rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
     for (int i = 0; i < solves; ++i) {
       if (coarse && i == solves - 1)
         for (double& length : target) length /= coarsening;
       remesh(patch, target, remeshing, progress);
-      solve(patch, rim, options.energy, options.weights, progress.part(0.4 * i + 0.2, 0.4 * i + 0.6, ""));
+      fair(patch, rim, options.energy, options.weights, progress.part(0.4 * i + 0.2, 0.4 * i + 0.6, ""));
     }
   }
   progress.update(1.0);

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/core/patch_relaxation.h"
-#include "common/core/patch_retriangulation.h"
-#include "common/core/patch_untangling.h"
+#include "common/core/patch_mending.h"
 #include "common/core/rim.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_curveunfold/divided_rim.h"
@@ -27,34 +25,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What is done, one after the other, to a patch that is tangled somewhere: its triangles there replaced by
-// others, over few rings and then more; relaxed, with enough sweeps for a few rings to settle on the
-// membrane; and at last vertices moved one by one, as long as that helps.
-enum class Mending { retriangulate, relax, untangle };
-struct MendingStep {
-  Mending mending;
-  int rings;
-};
-constexpr std::array<MendingStep, 12> mending_steps = {{{Mending::retriangulate, 0},
-                                                        {Mending::retriangulate, 1},
-                                                        {Mending::relax, 1},
-                                                        {Mending::retriangulate, 1},
-                                                        {Mending::relax, 2},
-                                                        {Mending::retriangulate, 1},
-                                                        {Mending::retriangulate, 2},
-                                                        {Mending::retriangulate, 3},
-                                                        {Mending::untangle, 0},
-                                                        {Mending::untangle, 0},
-                                                        {Mending::untangle, 1},
-                                                        {Mending::retriangulate, 2}}};
-constexpr int relaxation_sweeps = 10;
-constexpr int untangling_rounds = 3;
-// Patches with more tangled triangles are not worth it. The bounds are per patch, but for that of
-// untanglings, which is for all tries with one flat triangulation together.
-constexpr std::size_t most_to_mend = 300;
-constexpr std::size_t most_to_untangle = 60;
+// How often the vertices of patches are moved one by one, for all tries with one flat triangulation together.
 constexpr int most_untanglings = 3;
-constexpr int most_passes = 3;  // over all steps
 
 // With more tangled triangles than this another energy or resolution is no help: only another triangulation
 // may be. Of a patch that will have many triangles a coarse one is made first, with enough of them to follow
@@ -163,7 +135,6 @@ class HoleFiller {
   std::string attempt(const Try& plan);
   PatchMesh embed_flat(const Try& plan, const EmbeddingOptions& options);
   std::string probe(const Try& plan, EmbeddingOptions options);
-  bool mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step);
   std::vector<Index> tangled_triangles(const Patch& patch, std::string& defect);
   Patch as_patch(const PatchMesh& embedded) const;
   std::string route(const Try& plan, int count) const;
@@ -182,11 +153,11 @@ class HoleFiller {
   std::vector<std::array<Vector3, 3>> in_the_way_;  // the obstacles, and the flaps
   FilledHole result_;
   bool mended_ = false;
-  int untanglings_ = 0;
-  bool hopeless_ = false;       // with the flat triangulation at hand
-  std::size_t triangles_ = 0;   // of the last patch that was embedded at the resolution asked for
-  std::vector<Index> met_;      // triangles of the input that the last patch to meet any of them met
-  std::vector<double> wanted_;  // edge lengths, per vertex of the rim
+  int untanglings_ = most_untanglings;  // left for the flat triangulation at hand
+  bool hopeless_ = false;               // with the flat triangulation at hand
+  std::size_t triangles_ = 0;           // of the last patch that was embedded at the resolution asked for
+  std::vector<Index> met_;              // triangles of the input that the last patch to meet any of them met
+  std::vector<double> wanted_;          // edge lengths, per vertex of the rim
 };
 
 // Opens the rim, unfolds and triangulates it; false when that cannot be done, with the reason set if there is
@@ -196,7 +167,7 @@ bool HoleFiller::unfold_rim(const Try& plan) {
   const bool divided = plan.way == Way::divided;
   if (unfolded_ == wanted) return !result_.flat.empty();
   unfolded_ = wanted;
-  untanglings_ = 0;
+  untanglings_ = most_untanglings;
   hopeless_ = false;
   opened_ = open_pinches(rim_, plan.flap_height);
   in_the_way_ = obstacles_;
@@ -278,21 +249,6 @@ Patch HoleFiller::as_patch(const PatchMesh& embedded) const {
   return patch;
 }
 
-// What another triangulation of a spot may mend; anything else is wrong with the whole patch.
-bool can_be_mended(PatchDefect defect) {
-  switch (defect) {
-    case PatchDefect::edge_not_manifold:
-    case PatchDefect::vertex_not_manifold:
-    case PatchDefect::degenerate_face:
-    case PatchDefect::coincident_vertices:
-    case PatchDefect::meets_itself:
-    case PatchDefect::meets_input:
-      return true;
-    default:
-      return false;
-  }
-}
-
 // Checks the patch. When triangles meet what they must not, returns them, but none of the flaps, which follow
 // the embedded triangles and stay as they are. `defect` is empty when all is well.
 std::vector<Index> HoleFiller::tangled_triangles(const Patch& patch, std::string& defect) {
@@ -349,50 +305,28 @@ std::string HoleFiller::attempt(const Try& plan) {
   wanted_ = target_lengths(opened_.rim, options);
   mended_ = false;
   if (std::string defect = probe(plan, options); hopeless_) return defect;
-  auto start = Clock::now();
+  const auto start = Clock::now();
   PatchMesh embedded = embed_flat(plan, options);
-  result_.times.embedding += seconds_since(start);
   if (plan.resolution <= 1) triangles_ = embedded.triangle_count();
-  std::string defect;
-  Patch patch = as_patch(embedded);
-  std::vector<Index> tangled = tangled_triangles(patch, defect);
-  const std::string first_defect = defect;
-  std::size_t before = tangled.size() + 1;
-  for (int pass = 0; pass < most_passes && !defect.empty() && tangled.size() < before; ++pass) {
-    before = tangled.size();
-    for (const MendingStep& step : mending_steps) {
-      if (tangled.empty() || tangled.size() > most_to_mend) break;
-      start = Clock::now();
-      const bool changed = mend(embedded, tangled, step);
-      result_.times.embedding += seconds_since(start);
-      if (!changed) continue;
-      mended_ = true;
-      patch = as_patch(embedded);
-      tangled = tangled_triangles(patch, defect);
-    }
-  }
-  hopeless_ = tangled.size() > most_to_try_again;
-  if (!defect.empty()) return first_defect;
+  const double checking = result_.times.checking;
+  MendingOptions mending{opened_.rim, wanted_, context_.neighbourhood, in_the_way_, untanglings_};
+  Patch patch;
+  const Mending mended = mend(
+      embedded, mending,
+      [&](const PatchMesh& now) {
+        patch = as_patch(now);
+        PatchFault fault;
+        fault.triangles = tangled_triangles(patch, fault.defect);
+        return fault;
+      },
+      progress_);
+  untanglings_ = mending.untanglings;
+  mended_ = mended.changed;
+  result_.times.embedding += seconds_since(start) - (result_.times.checking - checking);
+  hopeless_ = mended.last.triangles.size() > most_to_try_again;
+  if (!mended.last.defect.empty()) return mended.first.defect;
   result_.patch = std::move(patch);
   return {};
-}
-
-// Whether the step changed the patch.
-bool HoleFiller::mend(PatchMesh& embedded, const std::vector<Index>& tangled, const MendingStep& step) {
-  switch (step.mending) {
-    case Mending::retriangulate:
-      return retriangulate(embedded, tangled, opened_.rim, wanted_, context_.neighbourhood, in_the_way_,
-                           step.rings, progress_) > 0;
-    case Mending::relax:
-      relax_around(embedded, tangled, step.rings, relaxation_sweeps);
-      return true;
-    case Mending::untangle:
-      if (tangled.size() > most_to_untangle || ++untanglings_ > most_untanglings) return false;
-      untangle(embedded, tangled, context_.neighbourhood, in_the_way_, opened_.rim.forbidden, step.rings,
-               untangling_rounds, progress_);
-      return true;
-  }
-  return false;
 }
 
 std::string HoleFiller::route(const Try& plan, int count) const {
