@@ -252,20 +252,19 @@ std::size_t remove_steiner_points(RimPatch& patch, const InputNeighbourhood& inp
   return patch.steiner_points;
 }
 
-Patch as_patch(const RimPatch& patch, const TriangleMesh& mesh) {
+Patch as_patch(const PatchMesh& patch, const std::vector<Index>& rim_vertices, const TriangleMesh& mesh) {
   Patch result;
   result.input_vertices = static_cast<Index>(mesh.vertices.size());
-  const Index rim_size = static_cast<Index>(patch.mesh.rim_size());
-  std::vector<Index> number(patch.mesh.vertex_count(), none);
-  for (Index v = 0; v < rim_size; ++v) number[v] = patch.rim_vertices[v];
-  for (Index v = rim_size; v < patch.mesh.vertex_count(); ++v) {
-    if (!patch.mesh.vertex_alive(v)) continue;
+  std::vector<Index> number = rim_vertices;
+  number.resize(patch.vertex_count(), none);
+  for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v) {
+    if (!patch.vertex_alive(v)) continue;
     number[v] = result.input_vertices + static_cast<Index>(result.vertices.size());
-    result.vertices.push_back(as_stored(patch.mesh.position(v)));
+    result.vertices.push_back(as_stored(patch.position(v)));
   }
-  for (Index t = 0; t < patch.mesh.triangle_count(); ++t) {
-    if (!patch.mesh.alive(t)) continue;
-    const Triangle& corners = patch.mesh.triangles()[t];
+  for (Index t = 0; t < patch.triangle_count(); ++t) {
+    if (!patch.alive(t)) continue;
+    const Triangle& corners = patch.triangles()[t];
     result.triangles.push_back({number[corners[0]], number[corners[1]], number[corners[2]]});
   }
   return result;

@@ -41,7 +41,8 @@ std::size_t remove_steiner_points(RimPatch& patch, const InputNeighbourhood& inp
                                   const std::vector<std::array<Vector3, 3>>& obstacles,
                                   const Progress& progress = Progress());
 
-/// The patch as the checker and the caller want it.
-Patch as_patch(const RimPatch& patch, const TriangleMesh& mesh);
+/// A patch mesh with these rim vertices as the checker and the caller want it. Triangles keep their numbers
+/// when the patch mesh has no gaps.
+Patch as_patch(const PatchMesh& patch, const std::vector<Index>& rim_vertices, const TriangleMesh& mesh);
 
 }  // namespace meshcomplete

@@ -1,0 +1,391 @@
+#include "filter_atomicvolumes/atomic_volumes.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "common/core/box_grid.h"
+#include "common/core/error.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/patch_check.h"
+#include "common/core/triangle_intersection.h"
+#include "filter_atomicvolumes/finishing.h"
+#include "filter_atomicvolumes/rim_patch.h"
+#include "filter_atomicvolumes/sheets.h"
+#include "filter_atomicvolumes/volume_solution.h"
+
+namespace meshcomplete {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+void require(bool condition, const char* message) {
+  if (!condition) throw CompletionError("reading the parameters", message);
+}
+
+void check_options(const AtomicVolumesOptions& o) {
+  require(!o.max_depth || (*o.max_depth >= 3 && *o.max_depth <= 30),
+          "MaxDepth must lie between 3 and 30, or be 0 for as deep as the mesh needs.");
+  require(o.node_budget >= 1000, "NodeBudget must be at least 1000.");
+  require(o.shifts >= 1 && o.shifts <= 100, "Shifts must lie between 1 and 100.");
+  require(o.smoothing_iterations >= 0 && o.smoothing_iterations <= 1000,
+          "SmoothingIterations must lie between 0 and 1000.");
+  require(!o.edge_length || (std::isfinite(*o.edge_length) && *o.edge_length > 0),
+          "The edge length must be positive, or 0 for that of the mesh round the hole.");
+  require(std::isfinite(o.constraints.hint_price) && o.constraints.hint_price > 0,
+          "HintPrice must be positive.");
+  require(std::isfinite(o.constraints.symmetry_price) && o.constraints.symmetry_price > 0,
+          "SymmetryPrice must be positive.");
+}
+
+// Wall seconds between the ends of stages.
+class StageClock {
+ public:
+  explicit StageClock(CompletionReport& report) : report_(report) {}
+  void end_of(const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    report_.stage_seconds.emplace_back(stage, std::chrono::duration<double>(now - start_).count());
+    start_ = now;
+  }
+
+ private:
+  CompletionReport& report_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// A piece of the patch with the loops that it closes.
+struct Piece {
+  Sheet sheet;
+  std::vector<std::size_t> loops;  // ascending
+  bool wanted = false;
+  Patch patch;
+  std::vector<BoundaryLoop> rims;  // as the patch walks them
+  std::string route, defect;
+};
+
+class Run {
+ public:
+  Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
+      const AtomicVolumesOptions& options, CompletionReport& report)
+      : mesh_(mesh),
+        topology_(topology),
+        loops_(loops),
+        options_(options),
+        neighbourhood_(mesh),
+        report_(report) {}
+
+  bool anything_to_do() const {
+    return std::any_of(report_.holes.begin(), report_.holes.end(),
+                       [&](const HoleReport& h) { return targeted(h); });
+  }
+  VolumeSolution solve(const Progress& progress) const;
+  void take_pieces(const LabelledSurface& surface);
+  void finish_pieces(const Progress& progress);
+  void separate(const Progress& progress);
+  AtomicVolumesResult result(CompletionReport report);
+
+ private:
+  static bool targeted(const HoleReport& hole) {
+    return hole.outcome == HoleOutcome::failed && hole.reason.empty();
+  }
+  bool companion(std::size_t loop) const;
+  std::vector<std::vector<std::size_t>> groups() const;
+  void decide(const std::vector<std::size_t>& pieces, std::map<std::size_t, std::string>& reasons);
+  void finish_piece(Piece& piece, const std::vector<Corners>& obstacles, const Progress& progress) const;
+  std::vector<Corners> obstacles_of(std::size_t piece) const;
+
+  const TriangleMesh& mesh_;
+  const MeshTopology& topology_;
+  const std::vector<BoundaryLoop>& loops_;
+  const AtomicVolumesOptions& options_;
+  const InputNeighbourhood neighbourhood_;
+  CompletionReport& report_;
+  std::vector<Piece> pieces_;
+};
+
+VolumeSolution Run::solve(const Progress& progress) const {
+  std::optional<VolumeSolution> best;
+  for (int shift = 0; shift < options_.shifts; ++shift) {
+    const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
+    VolumeSolution one =
+        solve_volumes(mesh_, topology_, neighbourhood_, options_,
+                      options_.seed + static_cast<std::uint64_t>(shift) * 0x9e3779b97f4a7c15ull,
+                      progress.part(from, to, "dividing space"));
+    if (!best || one.labelling.weight < best->labelling.weight) {
+      best.reset();
+      best.emplace(std::move(one));
+    }
+  }
+  return std::move(*best);
+}
+
+// A rim that no patch should close by itself, but that may be part of a larger hole: that of an island.
+bool Run::companion(std::size_t loop) const {
+  const LoopDefect defect = loops_[loop].defect;
+  return (defect == LoopDefect::open_sheet || defect == LoopDefect::isolated_triangle) &&
+         report_.holes[loop].reason == describe(defect);
+}
+
+void Run::take_pieces(const LabelledSurface& surface) {
+  std::unordered_map<std::uint64_t, std::size_t> loop_of;  // by face and vertex where its edge begins
+  for (std::size_t i = 0; i < loops_.size(); ++i)
+    for (std::size_t k = 0; k < loops_[i].faces.size(); ++k)
+      loop_of[static_cast<std::uint64_t>(loops_[i].faces[k]) << 32 |
+              loops_[i].vertices[(k + 1) % loops_[i].vertices.size()]] = i;
+  for (Sheet& sheet : split_into_sheets(mesh_, topology_, surface)) {
+    Piece piece;
+    for (Index h : sheet.closes) {
+      const auto found =
+          loop_of.find(static_cast<std::uint64_t>(h / 3) << 32 | mesh_.triangles[h / 3][h % 3]);
+      if (found != loop_of.end()) piece.loops.push_back(found->second);
+    }
+    std::sort(piece.loops.begin(), piece.loops.end());
+    piece.loops.erase(std::unique(piece.loops.begin(), piece.loops.end()), piece.loops.end());
+    piece.sheet = std::move(sheet);
+    // Pieces without a rim are bubbles, which nothing asked for.
+    if (!piece.loops.empty()) pieces_.push_back(std::move(piece));
+  }
+  std::map<std::size_t, std::string> reasons;
+  for (const std::vector<std::size_t>& group : groups()) decide(group, reasons);
+  for (const auto& [loop, reason] : reasons)
+    if (targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
+}
+
+// Pieces that share a loop stand or fall together.
+std::vector<std::vector<std::size_t>> Run::groups() const {
+  std::vector<std::size_t> parent(pieces_.size());
+  std::iota(parent.begin(), parent.end(), std::size_t(0));
+  const auto root = [&](std::size_t i) {
+    while (parent[i] != i) i = parent[i];
+    return i;
+  };
+  std::map<std::size_t, std::size_t> first;  // piece of each loop
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    for (std::size_t loop : pieces_[i].loops) {
+      const auto [it, fresh] = first.try_emplace(loop, i);
+      if (!fresh) parent[std::max(root(i), root(it->second))] = std::min(root(i), root(it->second));
+    }
+  std::map<std::size_t, std::vector<std::size_t>> by_root;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) by_root[root(i)].push_back(i);
+  std::vector<std::vector<std::size_t>> groups;
+  for (auto& [top, members] : by_root) groups.push_back(std::move(members));
+  return groups;
+}
+
+void Run::decide(const std::vector<std::size_t>& group, std::map<std::size_t, std::string>& reasons) {
+  std::vector<std::size_t> loops;
+  bool whole = true, any_target = false;
+  std::string reason;
+  for (std::size_t i : group) {
+    loops.insert(loops.end(), pieces_[i].loops.begin(), pieces_[i].loops.end());
+    whole &= pieces_[i].sheet.whole;
+  }
+  for (std::size_t loop : loops) {
+    const HoleReport& hole = report_.holes[loop];
+    any_target |= targeted(hole);
+    if (targeted(hole) || companion(loop) || !reason.empty()) continue;
+    reason = hole.outcome == HoleOutcome::skipped
+                 ? "one patch closes this hole and another that is to stay open (" + hole.reason + ")"
+                 : "one patch closes this hole and another that cannot be closed (" + hole.reason + ")";
+  }
+  if (reason.empty() && !whole)
+    reason =
+        "space round this rim could not be divided: faces touch or intersect each other there, or MaxDepth "
+        "is too small";
+  if (any_target && reason.empty())
+    for (std::size_t i : group) pieces_[i].wanted = true;
+  else
+    for (std::size_t loop : loops) reasons[loop] = reason;
+}
+
+void Run::finish_piece(Piece& piece, const std::vector<Corners>& obstacles, const Progress& progress) const {
+  RimPatch rough = make_rim_patch(mesh_, topology_, piece.sheet);
+  remove_steiner_points(rough, neighbourhood_, obstacles, progress);
+  piece.rims = rough.loops;
+  if (rough.steiner_points > 0) {
+    piece.defect = "the patch could not be joined to " + std::to_string(rough.steiner_points) +
+                   (rough.steiner_points == 1 ? " edge of the rim" : " edges of the rim");
+    return;
+  }
+  std::vector<const BoundaryLoop*> rim;
+  for (const BoundaryLoop& loop : piece.rims) rim.push_back(&loop);
+  const auto find = [&](const PatchMesh& now) {
+    PatchFault fault;
+    const Patch patch = as_patch(now, rough.rim_vertices, mesh_);
+    PatchCheck check = check_patch(neighbourhood_, patch, rim, progress);
+    if (!check.passed()) {
+      fault.defect = describe(check.defect);
+      if (can_be_mended(check.defect)) fault.triangles = std::move(check.patch_triangles);
+    } else if (!obstacles.empty()) {
+      std::vector<Corners> triangles;
+      for (const Triangle& t : patch.triangles) triangles.push_back(corners(mesh_, patch, t));
+      for (const auto& pair : improper_pairs_between(triangles, obstacles))
+        fault.triangles.push_back(pair.first);
+      fault.triangles.erase(std::unique(fault.triangles.begin(), fault.triangles.end()),
+                            fault.triangles.end());
+      if (!fault.triangles.empty()) fault.defect = "the patch meets the patch of another hole";
+    }
+    return fault;
+  };
+  const FinishingOptions finishing{options_.remesh, options_.fairing, options_.edge_length};
+  const FinishedPatch finished =
+      finish(rough.mesh, finishing, {rough.rim, neighbourhood_, obstacles, find}, progress);
+  piece.route = finished.route;
+  piece.defect = finished.defect;
+  if (piece.defect.empty()) piece.patch = as_patch(finished.mesh, rough.rim_vertices, mesh_);
+}
+
+void Run::finish_pieces(const Progress& progress) {
+  double total = 0;
+  for (const Piece& piece : pieces_)
+    total += piece.wanted ? static_cast<double>(piece.sheet.triangles.size()) : 0;
+  const Progress within = progress.part(0, 0, "fairing the patches");
+  std::mutex mutex;
+  std::exception_ptr error;
+  tbb::parallel_for(std::size_t(0), pieces_.size(), [&](std::size_t i) {
+    if (!pieces_[i].wanted) return;
+    try {
+      finish_piece(pieces_[i], {}, within);
+      progress.advance(static_cast<double>(pieces_[i].sheet.triangles.size()) / total);
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (!error) error = std::current_exception();
+    }
+  });
+  if (error) std::rethrow_exception(error);
+}
+
+// The other patches near a piece.
+std::vector<Corners> Run::obstacles_of(std::size_t piece) const {
+  Box box;
+  for (const SheetVertex& v : pieces_[piece].sheet.vertices)
+    box.include(bounding_box(v.position, v.position, v.position));
+  // A fair surface bulges over the stairs by less than their extent.
+  for (int k = 0; k < 3; ++k) {
+    const double size = box.high[k] - box.low[k];
+    box.low[k] -= size;
+    box.high[k] += size;
+  }
+  std::vector<Corners> triangles;
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    for (const Triangle& t : pieces_[i].patch.triangles) {
+      if (i == piece) break;
+      const Corners c = corners(mesh_, pieces_[i].patch, t);
+      if (box.meets(bounding_box(c[0], c[1], c[2]))) triangles.push_back(c);
+    }
+  return triangles;
+}
+
+// Patches that were finished each for itself may meet: the later one is finished again with the others in its
+// way.
+void Run::separate(const Progress& progress) {
+  std::vector<Corners> triangles;
+  std::vector<std::size_t> owner;
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    for (const Triangle& t : pieces_[i].patch.triangles) {
+      triangles.push_back(corners(mesh_, pieces_[i].patch, t));
+      owner.push_back(i);
+    }
+  std::vector<std::size_t> again;
+  for (const auto& [a, b] : improper_pairs(triangles))
+    if (owner[a] != owner[b]) again.push_back(std::max(owner[a], owner[b]));
+  std::sort(again.begin(), again.end());
+  again.erase(std::unique(again.begin(), again.end()), again.end());
+  for (std::size_t i : again) {
+    pieces_[i].patch = Patch();
+    finish_piece(pieces_[i], obstacles_of(i), progress);
+  }
+  progress.update(1);
+}
+
+AtomicVolumesResult Run::result(CompletionReport report) {
+  AtomicVolumesResult result;
+  result.completion.patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
+  std::vector<HoleReport> holes;
+  std::vector<char> merged(report.holes.size(), 0);
+  for (const std::vector<std::size_t>& group : groups()) {
+    if (!pieces_[group.front()].wanted) continue;
+    std::vector<std::size_t> loops;
+    bool closed = true;
+    std::string defect;
+    for (std::size_t i : group) {
+      loops.insert(loops.end(), pieces_[i].loops.begin(), pieces_[i].loops.end());
+      closed &= pieces_[i].defect.empty();
+      if (defect.empty()) defect = pieces_[i].defect;
+    }
+    std::sort(loops.begin(), loops.end());
+    loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
+    HoleReport& hole = report.holes[loops.front()];
+    const double first_edges = static_cast<double>(hole.edges);
+    Vector3 centre = hole.centre * first_edges;
+    for (std::size_t k = 1; k < loops.size(); ++k) {
+      const HoleReport& other = report.holes[loops[k]];
+      hole.loops.push_back(loops[k]);
+      hole.edges += other.edges;
+      hole.perimeter += other.perimeter;
+      centre += other.centre * static_cast<double>(other.edges);
+      merged[loops[k]] = 1;
+    }
+    hole.centre = centre / static_cast<double>(hole.edges);
+    hole.outcome = closed ? HoleOutcome::closed : HoleOutcome::failed;
+    hole.reason = defect;
+    for (std::size_t i : group) {
+      if (!closed) break;
+      hole.route = pieces_[i].route;
+      hole.vertices_added += pieces_[i].patch.vertices.size();
+      hole.faces_added += pieces_[i].patch.triangles.size();
+      append(result.completion.patch, pieces_[i].patch);
+    }
+  }
+  for (std::size_t i = 0; i < report.holes.size(); ++i) {
+    HoleReport& hole = report.holes[i];
+    if (hole.outcome == HoleOutcome::failed && hole.reason.empty()) hole.reason = "no patch reaches this rim";
+    if (!merged[i]) holes.push_back(std::move(hole));
+  }
+  report.holes = std::move(holes);
+  result.completion.report = std::move(report);
+  return result;
+}
+
+}  // namespace
+
+AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshSelection& selection,
+                                           const AtomicVolumesOptions& options, const Progress& progress) {
+  check_options(options);
+  CompletionReport report;
+  StageClock clock(report);
+  const MeshTopology topology = build_topology(mesh, progress.part(0, 0.05, "finding the boundary"));
+  const std::vector<BoundaryLoop> loops =
+      trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
+  report.holes = select_holes(mesh, loops, selection, options.holes);
+  Run run(mesh, topology, loops, options, report);
+  clock.end_of("finding the holes");
+  AtomicVolumesFigures figures;
+  if (run.anything_to_do()) {
+    const VolumeSolution solution = run.solve(progress.part(0.1, 0.5, "dividing space"));
+    figures = solution.figures;
+    report.notes.insert(report.notes.end(), solution.notes.begin(), solution.notes.end());
+    clock.end_of("dividing space and cutting");
+    run.take_pieces(solution.surface);
+    run.finish_pieces(progress.part(0.5, 0.95, "fairing the patches"));
+    clock.end_of("fairing the patches");
+    run.separate(progress.part(0.95, 1, "comparing the patches"));
+    clock.end_of("comparing the patches");
+  }
+  progress.update(1);
+  AtomicVolumesResult result = run.result(std::move(report));
+  result.figures = figures;
+  return result;
+}
+
+}  // namespace meshcomplete

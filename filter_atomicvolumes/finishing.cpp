@@ -1,0 +1,138 @@
+#include "filter_atomicvolumes/finishing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "common/core/error.h"
+#include "common/core/guarded_remeshing.h"
+#include "common/core/patch_fairing.h"
+#include "common/core/patch_remeshing.h"
+
+namespace meshcomplete {
+namespace {
+
+// After two solves with remeshing in between the triangles no longer change much.
+constexpr int solves = 2;
+constexpr int rounds_between = 3;
+
+// Guarded steps towards the fair surface.
+constexpr int approaches = 3;
+constexpr int sweeps = 4;
+
+// The edge length that each vertex of the patch should have: that of the rim, spread over the patch so that
+// every vertex has that of the rim vertex nearest along edges.
+std::vector<double> spread(const PatchMesh& patch, const std::vector<double>& rim_length) {
+  std::vector<double> size(patch.vertex_count(), 0),
+      distance(patch.vertex_count(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, Index>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  for (Index v = 0; v < patch.rim_size(); ++v) {
+    size[v] = rim_length[v];
+    distance[v] = 0;
+    queue.emplace(0.0, v);
+  }
+  while (!queue.empty()) {
+    const auto [far, v] = queue.top();
+    queue.pop();
+    if (far > distance[v]) continue;
+    patch.for_neighbours(v, [&, from = v, so_far = far](Index w) {
+      const double now = so_far + (patch.position(w) - patch.position(from)).norm();
+      if (now >= distance[w]) return;
+      distance[w] = now;
+      size[w] = size[from];
+      queue.emplace(now, w);
+    });
+  }
+  return size;
+}
+
+class Finisher {
+ public:
+  Finisher(const PatchMesh& rough, const FinishingOptions& options, const FinishingContext& context)
+      : rough_(rough), options_(options), context_(context), wanted_(context.rim.edge_length) {
+    if (options.edge_length) std::fill(wanted_.begin(), wanted_.end(), *options.edge_length);
+  }
+
+  FinishedPatch freely(const Progress& progress);
+  FinishedPatch guarded(const Progress& progress);
+
+ private:
+  const PatchMesh& rough_;
+  const FinishingOptions& options_;
+  const FinishingContext& context_;
+  std::vector<double> wanted_;
+};
+
+FinishedPatch Finisher::freely(const Progress& progress) {
+  FinishedPatch result{rough_, "", ""};
+  PatchMesh& patch = result.mesh;
+  patch.compact();
+  std::vector<double> target = spread(patch, wanted_);
+  RemeshOptions remeshing;
+  remeshing.forbidden = context_.rim.forbidden;
+  remeshing.rounds = rounds_between;
+  if (options_.fairing)
+    fair(patch, context_.rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
+  if (options_.remesh) remesh(patch, target, remeshing, progress);
+  for (int i = 0; options_.fairing && i < solves; ++i) {
+    fair(patch, context_.rim, *options_.fairing, LaplacianWeights::cotangent, progress);
+    if (options_.remesh && i + 1 < solves) remesh(patch, target, remeshing, progress);
+  }
+  MendingOptions mending{context_.rim, wanted_, context_.input, context_.obstacles};
+  const Mending mended = mend(patch, mending, context_.find, progress);
+  result.defect = mended.last.defect;
+  result.route = options_.fairing ? name(*options_.fairing) : "remeshed";
+  if (mended.changed) result.route += ", mended locally";
+  return result;
+}
+
+FinishedPatch Finisher::guarded(const Progress& progress) {
+  FinishedPatch result{rough_, "", ""};
+  PatchMesh& patch = result.mesh;
+  patch.compact();
+  std::vector<double> target = spread(patch, wanted_);
+  if (options_.remesh) {
+    GuardedPatch guard(patch, context_.input, context_.rim.forbidden, context_.obstacles);
+    guarded_remesh(guard, target, GuardedRemeshOptions(), progress);
+  }
+  patch.compact();
+  for (int i = 0; options_.fairing && i < approaches; ++i) {
+    PatchMesh goal = patch;
+    fair(goal, context_.rim, *options_.fairing,
+         i == 0 ? LaplacianWeights::uniform : LaplacianWeights::cotangent, progress);
+    GuardedPatch guard(patch, context_.input, context_.rim.forbidden, context_.obstacles);
+    guarded_approach(guard, goal.positions(), sweeps, progress);
+  }
+  result.defect = context_.find(patch).defect;
+  result.route = options_.fairing ? std::string(name(*options_.fairing)) + " in guarded steps"
+                                  : "remeshed in guarded steps";
+  return result;
+}
+
+}  // namespace
+
+FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, const FinishingContext& context,
+                     const Progress& progress) {
+  Finisher finisher(rough, options, context);
+  if (options.remesh || options.fairing) {
+    try {
+      FinishedPatch free = finisher.freely(progress);
+      if (free.defect.empty()) return free;
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const CompletionError&) {
+      // The equations had no solution, or the patch grew too large: guarded steps need neither.
+    }
+    FinishedPatch guarded = finisher.guarded(progress);
+    if (guarded.defect.empty()) return guarded;
+  }
+  FinishedPatch plain{rough, "faces of the volumes", ""};
+  plain.mesh.compact();
+  plain.defect = context.find(plain.mesh).defect;
+  return plain;
+}
+
+}  // namespace meshcomplete

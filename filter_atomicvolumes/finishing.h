@@ -1,0 +1,45 @@
+// From a clean patch of volume faces to a fair one with the resolution of the mesh round it.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/fairing.h"
+#include "common/core/patch_check.h"
+#include "common/core/patch_mending.h"
+#include "common/core/patch_mesh.h"
+#include "common/core/progress.h"
+#include "common/core/rim.h"
+
+namespace meshcomplete {
+
+struct FinishingOptions {
+  bool remesh = true;  ///< give it the resolution of the mesh around
+  std::optional<SurfaceEnergy> fairing = SurfaceEnergy::thin_plate;  ///< absent: none
+  std::optional<double> edge_length;                                 ///< absent: as the mesh around
+};
+
+/// What a patch is finished against.
+struct FinishingContext {
+  const Rim& rim;
+  const InputNeighbourhood& input;
+  const std::vector<std::array<Vector3, 3>>& obstacles;  ///< beyond the input: patches of other holes
+  std::function<PatchFault(const PatchMesh&)> find;      ///< the exact check
+};
+
+struct FinishedPatch {
+  PatchMesh mesh;
+  std::string route;   ///< how it was finished
+  std::string defect;  ///< what is wrong with it; empty when nothing is
+};
+
+/// Remeshes and fairs a patch freely, and mends it where it then meets something. Where that is no help,
+/// starts again from `rough`, which is clean, and remeshes and fairs it in guarded steps that keep it so.
+/// Throws `Cancelled`. Cost: near-linear in the patch; guarded steps are some ten times dearer.
+FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, const FinishingContext& context,
+                     const Progress& progress = Progress());
+
+}  // namespace meshcomplete

@@ -1,0 +1,130 @@
+#include "filter_atomicvolumes/volume_solution.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "common/core/error.h"
+
+namespace meshcomplete {
+namespace {
+
+constexpr const char* stage = "dividing space";
+
+// The root's side, in longest sides of the bounding box, and the share of it that stays free beside the mesh.
+constexpr double least_root = 1.5;
+constexpr double most_root = 2.0;
+constexpr double margin = 0.05;
+
+// Coincidences are accidents of one position: the chance that so many in a row have one is nil, but for
+// meshes that are degenerate themselves.
+constexpr int most_restarts = 20;
+
+// Crossed cubes that disagree are split so often before the square between them is left to the patch.
+constexpr int most_refinements = 8;
+
+// A uniform number from 0 to 1, the same on every platform.
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+Lattice place_root(const TriangleMesh& mesh, std::mt19937_64& random) {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& t : mesh.triangles)
+    for (Index v : t)
+      if (mesh.vertices[v].allFinite()) box.extend(mesh.vertices[v]);
+  const Vector3 sizes = box.sizes();
+  const double side = sizes.maxCoeff() * (least_root + (most_root - least_root) * uniform(random));
+  Vector3 origin = box.min();
+  for (int k = 0; k < 3; ++k) {
+    const double room = side * (1 - 2 * margin) - sizes[k];
+    origin[k] -= margin * side + uniform(random) * room;
+  }
+  return Lattice(origin, side);
+}
+
+double shortest_distance(const TriangleMesh& mesh, const MeshTopology& topology) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Index h : topology.boundary_half_edges) {
+    const Triangle& t = mesh.triangles[h / 3];
+    shortest = std::min(shortest, (mesh.vertices[t[h % 3]] - mesh.vertices[t[(h % 3 + 1) % 3]]).norm());
+  }
+  return shortest;
+}
+
+void count_leaves(const VolumeSolution& solution, AtomicVolumesFigures& figures) {
+  const Octree& octree = solution.decomposition.octree;
+  for (Index cube = 0; cube < octree.size(); ++cube) {
+    if (!octree.is_leaf(cube)) continue;
+    ++figures.leaves;
+    figures.depth = std::max(figures.depth, octree[cube].depth);
+    switch (solution.decomposition.volumes[cube].kind) {
+      case VolumeKind::blank:
+        ++figures.blank_leaves;
+        break;
+      case VolumeKind::crossed:
+        ++figures.crossed_leaves;
+        break;
+      default:
+        ++figures.hole_leaves;
+    }
+  }
+  figures.smallest_leaf =
+      solution.mesh.lattice.side() / static_cast<double>(std::int64_t{1} << figures.depth);
+  figures.nodes = solution.complex.nodes;
+  figures.tetrahedra = solution.complex.tetrahedra;
+  figures.cut_weight = solution.labelling.weight;
+}
+
+void check_budget(const VolumeComplex& complex, const AtomicVolumesOptions& options) {
+  if (complex.nodes > options.node_budget)
+    throw CompletionError(stage, "The graph would have " + std::to_string(complex.nodes) +
+                                     " nodes, more than the budget of " +
+                                     std::to_string(options.node_budget) +
+                                     ". Raise NodeBudget, or close fewer or shorter holes at a time.");
+}
+
+void solve(VolumeSolution& solution, const AtomicVolumesOptions& options, const Progress& progress) {
+  DecompositionOptions division;
+  division.max_depth = options.max_depth.value_or(Lattice::depth);
+  division.cube_budget = options.node_budget;
+  solution.decomposition = decompose(solution.mesh, division, progress.part(0, 0.3, stage));
+  solution.complex = build_complex(solution.mesh, solution.decomposition, progress.part(0.3, 0.7, stage));
+  for (int i = 0; i < most_refinements && !solution.complex.disagreeing.empty(); ++i) {
+    if (!split_further(solution.decomposition, solution.mesh, division, solution.complex.disagreeing)) break;
+    solution.complex = build_complex(solution.mesh, solution.decomposition, progress.part(0.7, 0.7, stage));
+  }
+  check_budget(solution.complex, options);
+  solution.labelling = cut_complex(solution.mesh, solution.complex, options.weight, {},
+                                   progress.part(0.7, 0.9, "computing the minimum cut"));
+  solution.surface =
+      extract(solution.mesh, solution.decomposition.octree, solution.complex, solution.labelling);
+}
+
+}  // namespace
+
+VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topology,
+                             const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
+                             std::uint64_t seed, const Progress& progress) {
+  std::mt19937_64 random(seed);
+  for (int restart = 0; restart <= most_restarts; ++restart) {
+    VolumeSolution solution{
+        {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}};
+    try {
+      solve(solution, options, progress);
+    } catch (const Coincidence&) {
+      continue;
+    }
+    count_leaves(solution, solution.figures);
+    solution.figures.smallest_distance = shortest_distance(mesh, topology);
+    solution.figures.restarts = restart;
+    return solution;
+  }
+  throw CompletionError(
+      stage,
+      "Some of the mesh's vertices lie so close to each other's edges or faces that space cannot be "
+      "divided between them. Apply 'Merge Close Vertices' or 'Remove Zero Area Faces' first.");
+}
+
+}  // namespace meshcomplete

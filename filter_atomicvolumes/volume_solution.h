@@ -1,0 +1,35 @@
+// One octree, its graph and its cut: what one position of the root cube gives.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/progress.h"
+#include "filter_atomicvolumes/atomic_volumes.h"
+#include "filter_atomicvolumes/decomposition.h"
+#include "filter_atomicvolumes/extraction.h"
+#include "filter_atomicvolumes/labelling.h"
+#include "filter_atomicvolumes/lattice_mesh.h"
+#include "filter_atomicvolumes/volume_complex.h"
+
+namespace meshcomplete {
+
+struct VolumeSolution {
+  LatticeMesh mesh;
+  Decomposition decomposition;
+  VolumeComplex complex;
+  Labelling labelling;
+  LabelledSurface surface;
+  AtomicVolumesFigures figures;
+  std::vector<std::string> notes;
+};
+
+/// Divides space round the mesh, with the root cube where `seed` puts it, and labels the volumes. Starts
+/// again elsewhere when features coincide. Throws CompletionError beyond the node budget, `Cancelled`.
+/// Deterministic.
+VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topology,
+                             const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
+                             std::uint64_t seed, const Progress& progress = Progress());
+
+}  // namespace meshcomplete
