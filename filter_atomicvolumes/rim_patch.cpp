@@ -10,7 +10,10 @@ namespace {
 constexpr Index none = PatchMesh::none;
 
 // Passes over the Steiner points that are left: removing some makes room for others.
-constexpr int most_passes = 8;
+constexpr int most_passes = 16;
+
+// How far from a Steiner point vertices are relaxed to make room.
+constexpr int relaxed_rings = 2;
 
 // Where on the way from a Steiner point to its neighbours their edges are split.
 constexpr double shrinking = 0.3;
@@ -72,6 +75,7 @@ class SteinerRemover {
   bool collapse(Index steiner);
   bool flip_one(Index steiner);
   void shrink_fan(Index steiner);
+  void relax_around(Index steiner);
 
   RimPatch& patch_;
   PatchMesh& mesh_;
@@ -174,6 +178,31 @@ void SteinerRemover::shrink_fan(Index steiner) {
   }
 }
 
+// Moves the inner vertices near the point towards the middle of their neighbours, off the stairs that are in
+// the way.
+void SteinerRemover::relax_around(Index steiner) {
+  std::vector<Index> near = {steiner};
+  std::size_t first = 0;
+  for (int ring = 0; ring < relaxed_rings; ++ring) {
+    const std::size_t last = near.size();
+    for (; first < last; ++first)
+      mesh_.for_neighbours(near[first], [&](Index v) {
+        if (std::find(near.begin(), near.end(), v) == near.end()) near.push_back(v);
+      });
+  }
+  for (Index v : near) {
+    if (mesh_.at_boundary(v)) continue;
+    Vector3 sum = Vector3::Zero();
+    double count = 0;
+    mesh_.for_neighbours(v, [&](Index w) {
+      sum += mesh_.position(w);
+      ++count;
+    });
+    const Vector3 here = mesh_.position(v), goal = sum / count;
+    if (!guarded_.move(v, goal)) guarded_.move(v, 0.5 * (here + goal));
+  }
+}
+
 std::size_t SteinerRemover::run(const Progress& progress) {
   for (int pass = 0; pass < most_passes && !steiner_.empty(); ++pass) {
     std::vector<Index> left;
@@ -185,7 +214,8 @@ std::size_t SteinerRemover::run(const Progress& progress) {
         gone = flipped && collapse(steiner);
       }
       if (!gone && pass > 1) {
-        shrink_fan(steiner);
+        if (pass > 2) relax_around(steiner);
+        if (pass % 2 == 0) shrink_fan(steiner);
         gone = collapse(steiner);
       }
       if (!gone) left.push_back(steiner);
