@@ -104,10 +104,9 @@ ParameterDeclaration centre_parameter(const char* name, const char* label, const
   return result;
 }
 
-ParameterDeclaration other_layer_parameter(const char* name, const char* label, const char* meaning) {
+ParameterDeclaration layer_parameter(const char* name, const char* label, const char* meaning) {
   ParameterDeclaration result = parameter(ParameterType::layer, name, label, meaning);
-  result.meaning += " The current layer, whose holes are closed, stands for none.";
-  result.default_in_words = "the current layer, for none";
+  result.default_in_words = "none";
   return result;
 }
 

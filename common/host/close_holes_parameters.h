@@ -31,9 +31,8 @@ ParameterDeclaration point_parameter(const char* name, const char* label, const 
                                      const Vector3& fallback);
 /// A point whose default is the centre of the current layer's bounding box.
 ParameterDeclaration centre_parameter(const char* name, const char* label, const char* meaning);
-/// A layer other than the current one, which stands for none and is the default (see other_layers.h). The
-/// meaning is completed by a sentence that says so.
-ParameterDeclaration other_layer_parameter(const char* name, const char* label, const char* meaning);
+/// A layer, or none, which is the default.
+ParameterDeclaration layer_parameter(const char* name, const char* label, const char* meaning);
 
 }  // namespace host
 }  // namespace meshcomplete

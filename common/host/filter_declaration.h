@@ -34,7 +34,8 @@ enum class ParameterType {
   choice,  ///< one of `choices`; the value is its position
   text,
   point,  ///< a point or a direction: a list of three numbers
-  layer,  ///< a mesh of the document; the default is the current one
+  layer,  ///< a layer of the document, or none, which is the default; MeshLab is given a choice, with none
+          ///< in front of the layers
   open_file,
   save_file,
 };
@@ -72,7 +73,7 @@ class ParameterValues {
   virtual int choice(const char* name) const = 0;
   virtual QString text(const char* name) const = 0;  ///< also for files
   virtual Vector3 point(const char* name) const = 0;
-  virtual const MeshModel& layer(const char* name) const = 0;
+  virtual const MeshModel* layer(const char* name) const = 0;  ///< null for none
 };
 
 /// What a filter is given when it runs. It may throw anything: the adapter turns it into MeshLab's way of

@@ -15,8 +15,7 @@ QVariant default_value(const ParameterDeclaration& parameter, const MeshDocument
     const QVariant value = parameter.document_default(document);
     if (value.isValid()) return value;
   }
-  if (parameter.type == ParameterType::layer)
-    return document.meshList.indexOf(const_cast<MeshModel*>(document.mm()));  // Qt compares with what it holds
+  if (parameter.type == ParameterType::layer) return 0;
   return parameter.fallback;
 }
 
@@ -32,6 +31,12 @@ float dialog_diagonal(const MeshDocument& document) {
   return mesh->cm.bbox.Diag();
 }
 
+QStringList layer_choices(const MeshDocument& document) {
+  QStringList choices("None");
+  for (const MeshModel* layer : document.meshList) choices << layer->label();
+  return choices;
+}
+
 QVariantList as_numbers(const vcg::Point3f& point) {
   return {double(point[0]), double(point[1]), double(point[2])};
 }
@@ -42,8 +47,7 @@ vcg::Point3f as_point(const QVariant& numbers) {
 }
 
 /// The value in MeshLab's list, or an invalid QVariant when it is of another kind than declared.
-QVariant listed_value(const ParameterDeclaration& parameter, const RichParameter& listed,
-                      const MeshDocument& document) {
+QVariant listed_value(const ParameterDeclaration& parameter, const RichParameter& listed) {
   const Value& value = listed.value();
   switch (parameter.type) {
     case ParameterType::boolean:
@@ -61,7 +65,7 @@ QVariant listed_value(const ParameterDeclaration& parameter, const RichParameter
     case ParameterType::point:
       return value.isPoint3f() ? QVariant(as_numbers(value.getPoint3f())) : QVariant();
     case ParameterType::layer:
-      return value.isMesh() ? QVariant(document.meshList.indexOf(value.getMesh())) : QVariant();
+      return value.isEnum() ? QVariant(value.getEnum()) : QVariant();
     case ParameterType::open_file:
     case ParameterType::save_file:
       return value.isFileName() ? QVariant(value.getFileName()) : QVariant();
@@ -72,7 +76,8 @@ QVariant listed_value(const ParameterDeclaration& parameter, const RichParameter
 QString in_words(double value) { return QString::number(value, 'g', 7); }
 
 /// A message when a value is not allowed, else empty.
-QString complaint(const ParameterDeclaration& parameter, const QVariant& value) {
+QString complaint(const ParameterDeclaration& parameter, const QVariant& value,
+                  const MeshDocument& document) {
   const bool number = parameter.type == ParameterType::integer || parameter.type == ParameterType::real ||
                       parameter.type == ParameterType::length;
   if (parameter.type == ParameterType::choice) {
@@ -83,8 +88,13 @@ QString complaint(const ParameterDeclaration& parameter, const QVariant& value) 
         .arg(position)
         .arg(parameter.choices.size());
   }
-  if (parameter.type == ParameterType::layer && value.toInt() < 0)
-    return QString("Parameter \"%1\": choose a layer of this project.").arg(parameter.name);
+  if (parameter.type == ParameterType::layer) {
+    const int position = value.toInt();
+    if (position >= 0 && position <= document.meshList.size()) return QString();
+    return QString("Parameter \"%1\": there is no layer %2; layers are counted from 1, and 0 is none.")
+        .arg(parameter.name)
+        .arg(position);
+  }
   if (parameter.type == ParameterType::point) {
     for (const QVariant& number : value.toList())
       if (!std::isfinite(number.toDouble()))
@@ -138,9 +148,8 @@ void add_parameters(const FilterDeclaration& filter, MeshDocument& document, Ric
         list.addParam(RichPoint3f(name, as_point(value), label, help));
         break;
       case ParameterType::layer:
-        // Without a mesh to name, MeshLab stops with an assertion unless the document is left out too.
-        list.addParam(
-            RichMesh(name, document.mm(), document.mm() == nullptr ? nullptr : &document, label, help));
+        // Not as MeshLab's own kind of parameter, whose list of layers has no entry for none.
+        list.addParam(RichEnum(name, value.toInt(), layer_choices(document), label, help));
         break;
       case ParameterType::open_file:
         list.addParam(RichOpenFile(name, value.toString(), parameter.choices, label, help));
@@ -158,13 +167,13 @@ MeshLabParameterValues::MeshLabParameterValues(const FilterDeclaration& filter, 
   for (const ParameterDeclaration& parameter : filter.parameters) {
     QVariant value = default_value(parameter, document);
     if (list.hasParameter(parameter.name)) {
-      value = listed_value(parameter, list.getParameterByName(parameter.name), document);
+      value = listed_value(parameter, list.getParameterByName(parameter.name));
       if (!value.isValid())
         throw CompletionError(
             "reading the parameters",
             QString("Parameter \"%1\" has a value of the wrong kind.").arg(parameter.name).toStdString());
     }
-    const QString problem = complaint(parameter, value);
+    const QString problem = complaint(parameter, value, document);
     if (!problem.isEmpty()) throw CompletionError("reading the parameters", problem.toStdString());
     values_.push_back(value);
   }
@@ -206,8 +215,9 @@ Vector3 MeshLabParameterValues::point(const char* name) const {
   return Vector3(numbers.value(0).toDouble(), numbers.value(1).toDouble(), numbers.value(2).toDouble());
 }
 
-const MeshModel& MeshLabParameterValues::layer(const char* name) const {
-  return *document_.meshList.at(value(name, {ParameterType::layer}).toInt());
+const MeshModel* MeshLabParameterValues::layer(const char* name) const {
+  const int position = value(name, {ParameterType::layer}).toInt();
+  return position == 0 ? nullptr : document_.meshList.at(position - 1);
 }
 
 }  // namespace host

@@ -25,7 +25,7 @@ class MeshLabParameterValues : public ParameterValues {
   int choice(const char* name) const override;
   QString text(const char* name) const override;
   Vector3 point(const char* name) const override;
-  const MeshModel& layer(const char* name) const override;
+  const MeshModel* layer(const char* name) const override;
 
  private:
   const QVariant& value(const char* name, std::initializer_list<ParameterType> types) const;

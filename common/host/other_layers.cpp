@@ -33,9 +33,9 @@ class Change {
     if (none_) return;
     matrix_ = target.inverse() * source;
     if (!matrix_.allFinite())
-      throw CompletionError(
-          stage, "The transformation matrix of the layer " + quoted(to) +
-                     " cannot be inverted. Reset it with \"Matrix: Reset Current Matrix\".");
+      throw CompletionError(stage,
+                            "The transformation matrix of the layer " + quoted(to) +
+                                " cannot be inverted. Reset it with \"Matrix: Reset Current Matrix\".");
   }
 
   Vector3 operator()(const Vector3& p) const {
@@ -62,14 +62,12 @@ std::vector<Vector3> points_of(const MeshModel& layer, const Change& change) {
 
 }  // namespace
 
-const MeshModel* other_layer(const FilterRun& run, const char* parameter) {
-  const MeshModel& layer = run.parameters.layer(parameter);
-  return &layer == run.document.mm() ? nullptr : &layer;
-}
-
 std::vector<Vector3> other_layer_points(const FilterRun& run, const char* parameter) {
-  const MeshModel* layer = other_layer(run, parameter);
+  const MeshModel* layer = run.parameters.layer(parameter);
   if (layer == nullptr) return {};
+  if (layer == run.document.mm())
+    throw CompletionError(stage, "Parameter \"" + std::string(parameter) + "\" names " + quoted(*layer) +
+                                     ", the layer that the filter works on. Choose another one, or none.");
   if (layer->cm.vn == 0)
     throw CompletionError(stage, "The layer " + quoted(*layer) + ", chosen as \"" + parameter +
                                      "\", is empty: it has no vertices.");
@@ -79,11 +77,10 @@ std::vector<Vector3> other_layer_points(const FilterRun& run, const char* parame
 void refuse_shared_layers(const FilterRun& run, const std::vector<const char*>& parameters) {
   for (std::size_t i = 0; i < parameters.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const MeshModel* layer = other_layer(run, parameters[i]);
-      if (layer == nullptr || layer != other_layer(run, parameters[j])) continue;
-      throw CompletionError(stage, "The layer " + quoted(*layer) + " is chosen twice, as \"" + parameters[j] +
-                                       "\" and as \"" + parameters[i] + "\". Choose the current layer, " +
-                                       quoted(*run.document.mm()) + ", where you want none.");
+      const MeshModel* layer = run.parameters.layer(parameters[i]);
+      if (layer != nullptr && layer == run.parameters.layer(parameters[j]))
+        throw CompletionError(stage, "The layer " + quoted(*layer) + " is chosen twice, as \"" +
+                                         parameters[j] + "\" and as \"" + parameters[i] + "\".");
     }
 }
 

@@ -10,16 +10,13 @@
 namespace meshcomplete {
 namespace host {
 
-/// The layer that a layer parameter names, or null when it names the current layer: MeshLab's dialog always
-/// names one, so the layer that the filter works on stands for none.
-const MeshModel* other_layer(const FilterRun& run, const char* parameter);
-
-/// The vertices of that layer in the coordinates of the current one: their transformation matrices are
-/// applied. Empty when the parameter names no other layer. Throws CompletionError when the layer has no
-/// vertices, some that are not finite, or when the current layer's matrix cannot be inverted.
+/// The vertices of the layer that a layer parameter names, in the coordinates of the current layer:
+/// transformation matrices are applied. Empty when it names none. Throws CompletionError when it names the
+/// current layer, when the layer has no vertices or some that are not finite, or when the current layer's
+/// matrix cannot be inverted.
 std::vector<Vector3> other_layer_points(const FilterRun& run, const char* parameter);
 
-/// Throws CompletionError when two of these layer parameters name the same layer, other than the current one.
+/// Throws CompletionError when two of these layer parameters name the same layer.
 void refuse_shared_layers(const FilterRun& run, const std::vector<const char*>& parameters);
 
 /// What a layer's camera or scanner saw: its vertices.

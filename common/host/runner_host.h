@@ -24,17 +24,18 @@ namespace host {
 
 /// What a parameter's value is, and which QVariant holds it.
 enum class ValueKind {
-  boolean,      ///< bool
-  integer,      ///< int
-  real,         ///< double
-  length,       ///< double, mesh units
-  choice,       ///< int, the position in `choices`
-  text,         ///< QString
-  layer,        ///< int, the layer's position in the document
-  open_file,    ///< QString
-  save_file,    ///< QString
-  numbers,      ///< QVariantList of `count` doubles: a colour (0 to 255), a point, a matrix
-  unsupported,  ///< keeps its default
+  boolean,        ///< bool
+  integer,        ///< int
+  real,           ///< double
+  length,         ///< double, mesh units
+  choice,         ///< int, the position in `choices`
+  text,           ///< QString
+  layer,          ///< int, the layer's position in the document
+  layer_or_none,  ///< int, likewise; -1 is none. Declared parameters only
+  open_file,      ///< QString
+  save_file,      ///< QString
+  numbers,        ///< QVariantList of `count` doubles: a colour (0 to 255), a point, a matrix
+  unsupported,    ///< keeps its default
 };
 
 /// A parameter of a filter, with the default it has for the document as it stands.

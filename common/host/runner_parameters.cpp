@@ -128,6 +128,7 @@ void set_value(RichParameter& parameter, ValueKind kind, const QVariant& value, 
       else
         parameter.setValue(FloatValue(value.toFloat()));
       break;
+    case ValueKind::layer_or_none:
     case ValueKind::unsupported:
       break;
   }

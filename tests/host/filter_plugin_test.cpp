@@ -161,50 +161,54 @@ TEST_F(FilterPluginTest, PointsAndLayersArrive) {
   model.cm.bbox = vcg::Box3<Scalarm>(Point3m(1, 2, 3), Point3m(3, 2, 4));
   const MeshModel* other = &test::layer_from(document, test::cube(), "other.ply");
   document.setCurrentMesh(model.id());
-  const MeshModel* expected = &model;
+  const MeshModel* expected = nullptr;
   Vector3 centre(2, 2, 3.5);
   FilterDeclaration filter = filter_that([&](FilterRun& run) {
     EXPECT_EQ(run.parameters.point("Place"), centre);
     EXPECT_EQ(run.parameters.point("Direction"), Vector3(0, 0, 1));
-    EXPECT_EQ(&run.parameters.layer("Other"), expected);
+    EXPECT_EQ(run.parameters.layer("Other"), expected);
     EXPECT_THROW(run.parameters.integer("Other"), std::logic_error);
     EXPECT_THROW(run.parameters.layer("Place"), std::logic_error);
   });
   filter.parameters = {centre_parameter("Place", "Place", "Where."),
                        point_parameter("Direction", "Direction", "Where to.", {0, 0, 1}),
-                       other_layer_parameter("Other", "Other", "Which.")};
+                       layer_parameter("Other", "Other", "Which.")};
   FakePlugin plugin({filter});
   EXPECT_TRUE(plugin.run(document)) << qPrintable(plugin.message());
   EXPECT_TRUE(plugin.run(document, 0, [](RichParameterList& list) { list.clear(); })) << "left out: defaults";
   expected = other;
   centre = Vector3(-0.5, 0, 1e10f);
   EXPECT_TRUE(plugin.run(document, 0, [&](RichParameterList& list) {
+    const auto& choice = dynamic_cast<const RichEnum&>(list.getParameterByName("Other"));
+    EXPECT_EQ(choice.enumvalues, QStringList({"None", "mesh.ply", "other.ply"}));
     list.setValue("Place", Point3fValue(vcg::Point3f(-0.5f, 0, 1e10f)));
-    list.setValue("Other", MeshValue(&document, 1));
+    list.setValue("Other", EnumValue(2));
   })) << qPrintable(plugin.message());
 }
 
 TEST_F(FilterPluginTest, WrongPointsAndLayersAreRefused) {
   FilterDeclaration filter = filter_that([](FilterRun&) { FAIL() << "must not run"; });
   filter.parameters = {point_parameter("Place", "Place", "Where.", {0, 0, 0}),
-                       other_layer_parameter("Other", "Other", "Which.")};
+                       layer_parameter("Other", "Other", "Which.")};
   FakePlugin plugin({filter});
   EXPECT_FALSE(plugin.run(document, 0, [](RichParameterList& list) {
     list.setValue("Place", Point3fValue(vcg::Point3f(0, std::nanf(""), 0)));
   }));
   EXPECT_EQ(plugin.message(), "Parameter \"Place\" must be three finite numbers.");
-  MeshDocument elsewhere;
-  MeshModel& stranger = test::layer_from(elsewhere, test::cube());
-  EXPECT_FALSE(plugin.run(document, 0,
-                          [&](RichParameterList& list) { list.setValue("Other", MeshValue(&stranger)); }));
-  EXPECT_EQ(plugin.message(), "Parameter \"Other\": choose a layer of this project.");
+  for (const int wrong : {-1, 2}) {
+    EXPECT_FALSE(
+        plugin.run(document, 0, [&](RichParameterList& list) { list.setValue("Other", EnumValue(wrong)); }));
+    EXPECT_EQ(plugin.message(),
+              QString("Parameter \"Other\": there is no layer %1; layers are counted from 1, and 0 is none.")
+                  .arg(wrong));
+  }
 }
 
 TEST_F(FilterPluginTest, ParametersCanBeAskedForWithoutAMesh) {
   MeshDocument empty;
   FilterDeclaration filter = filter_that([](FilterRun&) { FAIL() << "must not run"; });
   filter.parameters = {centre_parameter("Place", "Place", "Where."),
-                       other_layer_parameter("Other", "Other", "Which.")};
+                       layer_parameter("Other", "Other", "Which.")};
   FakePlugin plugin({filter});
   EXPECT_FALSE(plugin.run(empty));
   EXPECT_TRUE(plugin.message().contains("no mesh"));

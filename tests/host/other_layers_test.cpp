@@ -22,17 +22,17 @@ class OtherLayersTest : public testing::Test {
  protected:
   OtherLayersTest() { document.setCurrentMesh(mesh.id()); }
 
-  /// Runs `look` in a filter with the parameters First and Second, set to these layers.
+  /// Runs `look` in a filter with the parameters First and Second, set to these layers: 0 is none.
   bool run(const std::function<void(const FilterRun&)>& look, int first, int second) {
     FilterDeclaration filter;
     filter.name = "Fake Filter";
     filter.apply = [look](FilterRun& run) { look(run); };
-    filter.parameters = {other_layer_parameter("First", "First", "One."),
-                         other_layer_parameter("Second", "Second", "Another.")};
+    filter.parameters = {layer_parameter("First", "First", "One."),
+                         layer_parameter("Second", "Second", "Another.")};
     plugin = std::make_unique<FakePlugin>(std::vector<FilterDeclaration>{filter});
     return plugin->run(document, 0, [&](RichParameterList& list) {
-      list.setValue("First", MeshValue(&document, first));
-      list.setValue("Second", MeshValue(&document, second));
+      list.setValue("First", EnumValue(first));
+      list.setValue("Second", EnumValue(second));
     });
   }
   std::string message() { return plugin->message().toStdString(); }
@@ -55,15 +55,14 @@ class OtherLayersTest : public testing::Test {
   std::unique_ptr<FakePlugin> plugin;
 };
 
-TEST_F(OtherLayersTest, TheCurrentLayerStandsForNone) {
+TEST_F(OtherLayersTest, NoneHasNoPoints) {
   EXPECT_TRUE(run(
       [&](const FilterRun& run) {
-        EXPECT_EQ(other_layer(run, "First"), nullptr);
         EXPECT_TRUE(other_layer_points(run, "First").empty());
-        EXPECT_EQ(other_layer(run, "Second"), &outside);
+        EXPECT_EQ(other_layer_points(run, "Second").size(), 1u);
         refuse_shared_layers(run, {"First", "Second"});
       },
-      0, 2));
+      0, 3));
 }
 
 TEST_F(OtherLayersTest, PointsAreTheVerticesThatAreNotDeleted) {
@@ -75,7 +74,7 @@ TEST_F(OtherLayersTest, PointsAreTheVerticesThatAreNotDeleted) {
         const std::vector<Vector3> expected = {{0, 0, 0}, {1, 2, 3}};
         EXPECT_EQ(other_layer_points(run, "First"), expected) << "equal matrices change nothing at all";
       },
-      1, 0));
+      2, 0));
 }
 
 TEST_F(OtherLayersTest, PointsAreInTheCoordinatesOfTheCurrentLayer) {
@@ -91,12 +90,12 @@ TEST_F(OtherLayersTest, PointsAreInTheCoordinatesOfTheCurrentLayer) {
         // (1, 2, 3) is (11, 2, 3) in space, and 2 * (-y, x, z) = (11, 2, 3) in the mesh's coordinates.
         EXPECT_LT((other_layer_points(run, "First").at(2) - Vector3(1, -5.5, 1.5)).norm(), 1e-12);
       },
-      1, 0));
+      2, 0));
 }
 
 TEST_F(OtherLayersTest, AMatrixThatCannotBeInvertedIsRefused) {
   mesh.cm.Tr.SetScale(1, 0, 1);
-  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 1, 0));
+  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 2, 0));
   EXPECT_EQ(
       message(),
       "The transformation matrix of the layer \"mesh.ply\" cannot be inverted. Reset it with \"Matrix: Reset "
@@ -105,20 +104,24 @@ TEST_F(OtherLayersTest, AMatrixThatCannotBeInvertedIsRefused) {
 
 TEST_F(OtherLayersTest, UnusableLayersAreRefused) {
   document.addNewMesh("", "nothing", false);
-  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 3, 0));
+  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 4, 0));
   EXPECT_EQ(message(), "The layer \"nothing\", chosen as \"First\", is empty: it has no vertices.");
   inside.cm.vert[1].P()[2] = std::numeric_limits<float>::infinity();
-  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 1, 0));
+  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 2, 0));
   EXPECT_EQ(message(),
             "The layer \"inside.ply\" has vertices with coordinates that are infinite or not numbers.");
 }
 
+TEST_F(OtherLayersTest, TheCurrentLayerIsRefused) {
+  EXPECT_FALSE(run([](const FilterRun& run) { other_layer_points(run, "First"); }, 1, 0));
+  EXPECT_EQ(message(),
+            "Parameter \"First\" names \"mesh.ply\", the layer that the filter works on. Choose another one, "
+            "or none.");
+}
+
 TEST_F(OtherLayersTest, OneLayerForTwoParametersIsRefused) {
-  EXPECT_FALSE(run([](const FilterRun& run) { refuse_shared_layers(run, {"First", "Second"}); }, 1, 1));
-  EXPECT_EQ(
-      message(),
-      "The layer \"inside.ply\" is chosen twice, as \"First\" and as \"Second\". Choose the current layer, "
-      "\"mesh.ply\", where you want none.");
+  EXPECT_FALSE(run([](const FilterRun& run) { refuse_shared_layers(run, {"First", "Second"}); }, 2, 2));
+  EXPECT_EQ(message(), "The layer \"inside.ply\" is chosen twice, as \"First\" and as \"Second\".");
   EXPECT_TRUE(run([](const FilterRun& run) { refuse_shared_layers(run, {"First", "Second"}); }, 0, 0));
 }
 

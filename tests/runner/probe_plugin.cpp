@@ -115,11 +115,11 @@ FilterDeclaration layers() {
   filter.name = "Probe: Layers";
   filter.python_name = "probe_layers";
   filter.description = "Looks at another layer.";
-  filter.parameters = {other_layer_parameter("Other", "Other", "Another layer."),
+  filter.parameters = {layer_parameter("Other", "Other", "Another layer."),
                        centre_parameter("Place", "Place", "A place."),
                        positive_parameter("Price", "Price", "A price.", "coins", 2)};
   filter.apply = [](FilterRun& run) {
-    const MeshModel* other = other_layer(run, "Other");
+    const MeshModel* other = run.parameters.layer("Other");
     const Vector3 place = run.parameters.point("Place");
     run.log(QString("Other=%1 Points=%2 Views=%3 Place=%4 %5 %6.")
                 .arg(other == nullptr ? "none" : other->label())

@@ -89,18 +89,21 @@ class LayersAndPoints(RunnerCase):
         return self.check(2, "-i", "cloud.ply", "box.ply", "-f", LAYERS, "-p", *parameters, "-o", "out.ply").stderr
 
     def test_layers_by_number_and_name(self):
-        self.assertEqual(self.logged("Other=0"), "Other=cloud.ply Points=2 Views=0 Place=2 1 0.5.")
-        self.assertEqual(self.logged("Other=cloud.ply"), "Other=cloud.ply Points=2 Views=0 Place=2 1 0.5.")
-        self.assertEqual(self.read_report()["filters"][0]["parameters"]["Other"], "0")
+        for given in ("0", "cloud.ply"):
+            self.assertEqual(self.logged("Other=" + given), "Other=cloud.ply Points=2 Views=0 Place=2 1 0.5.")
+            self.assertEqual(self.read_report()["filters"][0]["parameters"]["Other"], "cloud.ply")
         self.assertIn("there are 2 layers", self.wrong("Other=2"))
         self.assertIn("there are 2 layers", self.wrong("Other=-1"))
         self.assertIn('Did you mean "cloud.ply"?', self.wrong("Other=clowd.ply"))
+        result = self.check(1, "-i", "cloud.ply", "box.ply", "-f", LAYERS, "-p", "Other=1", "-o", "out.ply")
+        self.assertIn('names "box.ply", the layer that the filter works on', result.stderr)
 
-    def test_the_current_layer_is_the_default_and_stands_for_none(self):
-        for parameters in ((), ("Other=1",), ("Other=box.ply",)):
+    def test_none_is_the_default(self):
+        for parameters in ((), ("Other=none",), ("Other=None",)):
             self.assertEqual(self.logged(*parameters), "Other=none Points=0 Views=0 Place=2 1 0.5.")
+            self.assertEqual(self.read_report()["filters"][0]["parameters"]["Other"], "None")
         text = " ".join(self.check(0, "--describe", LAYERS).stdout.split())
-        self.assertIn("default: the current layer, for none", text)
+        self.assertIn("none, or a layer, counted from 0, or its name; default: none", text)
         self.assertIn("3 numbers; default: the centre of the bounding box", text)
         self.assertIn("number; greater than 0; unit: coins; default: 2", text)
 
@@ -126,11 +129,14 @@ class LayersAndPoints(RunnerCase):
         self.assertIn("greater than 0", self.wrong("Price=0"))
 
     def test_layers_and_points_in_scripts(self):
-        with open(self.path("script.mlx"), "w") as file:
-            file.write('<FilterScript><filter name="Probe: Layers"><Param name="Other" type="RichMesh" value="0"/>'
-                       '<Param name="Place" type="RichPoint3f" x="1" y="0" z="-1"/></filter></FilterScript>')
-        result = self.check(0, "-i", "cloud.ply", "box.ply", "-s", "script.mlx", "-o", "out.ply")
-        self.assertIn("Other=cloud.ply Points=2 Views=0 Place=1 0 -1.", result.stdout)
+        """As MeshLab writes them: a layer is a choice, with none in front."""
+        for value, expected in (("0", "Other=none Points=0"), ("1", "Other=cloud.ply Points=2")):
+            with open(self.path("script.mlx"), "w") as file:
+                file.write(f'<FilterScript><filter name="Probe: Layers"><Param name="Other" type="RichEnum" value="{value}" '
+                           'enum_cardinality="3" enum_val0="None" enum_val1="cloud.ply" enum_val2="box.ply"/>'
+                           '<Param name="Place" type="RichPoint3f" x="1" y="0" z="-1"/></filter></FilterScript>')
+            result = self.check(0, "-i", "cloud.ply", "box.ply", "-s", "script.mlx", "-o", "out.ply")
+            self.assertIn(expected + " Views=0 Place=1 0 -1.", result.stdout)
 
 
 class Scripts(RunnerCase):

@@ -110,15 +110,16 @@ void Session::check_request() {
   for (const ProjectOutput& project : options_.projects) outputs_.claim(project.path);
   for (const StepRequest& request : options_.steps) {
     if (!request.script) {
-      add_step(request);
+      add_step(request, false);
       continue;
     }
-    for (const StepRequest& scripted : read_script(request.name)) add_step(scripted);
+    for (const StepRequest& scripted : read_script(request.name)) add_step(scripted, true);
   }
 }
 
-void Session::add_step(const StepRequest& request) {
+void Session::add_step(const StepRequest& request, bool scripted) {
   Step step;
+  step.scripted = scripted;
   step.filter = &filter_called(request.name);
   step.parameters = request.parameters;
   for (std::size_t i = 0; i < step.parameters.size(); ++i)

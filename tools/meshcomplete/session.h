@@ -24,6 +24,7 @@ class Session {
  private:
   struct Step {
     const host::HostFilter* filter = nullptr;
+    bool scripted = false;  ///< values are those of MeshLab's scripts
     std::vector<std::pair<QString, QString>> parameters;
   };
 
@@ -31,7 +32,7 @@ class Session {
   bool answer_questions();
   void check_request();
   const host::HostFilter& filter_called(const QString& name);
-  void add_step(const StepRequest& request);
+  void add_step(const StepRequest& request, bool scripted);
   void check_declared_parameters(const Step& step) const;
 
   void load_sources();

@@ -53,8 +53,13 @@ std::map<QString, QVariant> Session::values_of(const Step& step, FilterRecord& r
       throw UsageError(QString("%1 has no parameter \"%2\".%3 --describe \"%1\" shows all of them.")
                            .arg(step.filter->name, given.first, did_you_mean(given.first, names)));
     const HostParameter& parameter = parameters[std::size_t(position)];
-    values[given.first] =
-        parse_value(parameter, declaration_of(*step.filter, given.first), &layers, given.second);
+    const ParameterDeclaration* declaration = declaration_of(*step.filter, given.first);
+    // To MeshLab a layer parameter of ours is a choice, with none in front of the layers.
+    if (declaration != nullptr && declaration->type == host::ParameterType::layer && !step.scripted)
+      values[given.first] =
+          parse_value(as_host_parameter(*declaration), declaration, &layers, given.second).toInt() + 1;
+    else
+      values[given.first] = parse_value(parameter, declaration, &layers, given.second);
   }
   for (const HostParameter& parameter : parameters) {
     const auto given = values.find(parameter.name);

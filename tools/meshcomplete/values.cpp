@@ -38,7 +38,7 @@ ValueKind kind_of(ParameterType type) {
     case ParameterType::point:
       return ValueKind::numbers;
     case ParameterType::layer:
-      return ValueKind::layer;
+      return ValueKind::layer_or_none;
     case ParameterType::open_file:
       return ValueKind::open_file;
     case ParameterType::save_file:
@@ -72,6 +72,8 @@ class ValueParser {
         return choice();
       case ValueKind::layer:
         return layer();
+      case ValueKind::layer_or_none:
+        return text_.compare("none", Qt::CaseInsensitive) == 0 ? no_layer : layer();
       case ValueKind::numbers:
         return numbers();
       case ValueKind::text:
@@ -155,7 +157,7 @@ class ValueParser {
   int layer() const {
     bool fine = false;
     const int position = text_.toInt(&fine);
-    if (layers_ == nullptr) return position;
+    if (layers_ == nullptr) return no_layer;
     if (fine && position >= 0 && std::size_t(position) < layers_->size()) return position;
     for (std::size_t i = 0; i < layers_->size(); ++i)
       if ((*layers_)[i].label == text_) return int(i);
@@ -219,6 +221,8 @@ QString type_in_words(const HostParameter& parameter) {
       return "text";
     case ValueKind::layer:
       return "layer, counted from 0, or its name";
+    case ValueKind::layer_or_none:
+      return "none, or a layer, counted from 0, or its name";
     case ValueKind::open_file:
       return "file to read";
     case ValueKind::save_file:
@@ -250,8 +254,11 @@ QString value_in_words(const HostParameter& parameter, const QVariant& value) {
     case ValueKind::boolean:
       return value.toBool() ? "true" : "false";
     case ValueKind::integer:
+      return QString::number(value.toInt());
     case ValueKind::layer:
       return QString::number(value.toInt());
+    case ValueKind::layer_or_none:
+      return value.toInt() == no_layer ? "none" : QString::number(value.toInt());
     case ValueKind::real:
     case ValueKind::length:
       return number_in_words(value.toDouble());

@@ -10,6 +10,9 @@
 namespace meshcomplete {
 namespace runner {
 
+/// The value of a layer parameter that names no layer, or one that is not loaded yet.
+constexpr int no_layer = -1;
+
 /// A declared parameter as the host describes one, without a document: lengths in per cent have no meaning
 /// yet, and the default is the one that does not depend on the mesh.
 host::HostParameter as_host_parameter(const host::ParameterDeclaration& declaration);
