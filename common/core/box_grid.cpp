@@ -8,6 +8,9 @@ namespace {
 // Boxes of points, and smaller ones than this power of two, share a level.
 constexpr int smallest_size = -60;
 
+// What 64 bits hold without overflow, the next one included.
+constexpr double last_cell = 0x1p62;
+
 }  // namespace
 
 std::size_t BoxGrid::CellHash::operator()(const Cell& cell) const {
@@ -19,9 +22,11 @@ std::size_t BoxGrid::CellHash::operator()(const Cell& cell) const {
   return static_cast<std::size_t>(hash);
 }
 
+// Points far away share the last cell: the order along an axis is kept, and that is all that is needed.
 BoxGrid::Cell BoxGrid::cell_at(const std::array<double, 3>& p, double side) {
   Cell cell;
-  for (int k = 0; k < 3; ++k) cell.at[k] = static_cast<std::int64_t>(std::floor(p[k] / side));
+  for (int k = 0; k < 3; ++k)
+    cell.at[k] = static_cast<std::int64_t>(std::clamp(std::floor(p[k] / side), -last_cell, last_cell));
   return cell;
 }
 

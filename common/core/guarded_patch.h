@@ -33,7 +33,7 @@ class GuardedPatch {
   /// of the rim): triangles at it do not count as meeting that input triangle.
   void rest(Index vertex, Index input_triangle);
 
-  /// Whether the triangles round a vertex, or one triangle, meet nothing where they are.
+  /// Whether a triangle has an area and meets nothing where it is.
   bool is_clean(Index triangle) const;
 
   bool move(Index vertex, const Vector3& to);

@@ -50,7 +50,7 @@ class Lattice {
 };
 
 /// The sign of the volume of the tetrahedron: positive when `a`, `b`, `c` appear counter-clockwise seen from
-/// `d`'s opposite side, that is when `d` lies on the side that the triangle's normal points to. Exact.
+/// `d`, which then lies on the side that the triangle's normal points to. Exact.
 int orientation(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, const LatticePoint& d);
 
 /// The sign of component `axis` of the triangle's normal. Exact.
@@ -64,9 +64,9 @@ bool meets(const LatticeTriangle& triangle, const LatticeBox& box);
 /// numbers.
 bool meets(const LatticePoint& a, const LatticePoint& b, const LatticeBox& box);
 
-/// How the segment from `from` to `to` passes through a triangle: 1 from back to front, -1 from front to
-/// back, 0 not at all; `touches` when it meets a corner or side, an end lies in the triangle's plane, or the
-/// segment does. Exact.
+/// How the segment from `from` to `to` passes through a triangle: `none` when they do not meet; `to_front`
+/// and `to_back` when inner points of both meet; `touches` when it meets a corner or side, or the triangle
+/// with an end. A segment in the triangle's plane always counts as touching. Exact.
 enum class Passage { none, to_front, to_back, touches };
 Passage passage(const LatticePoint& from, const LatticePoint& to, const LatticeTriangle& triangle);
 
