@@ -7,6 +7,7 @@
 
 #include "common/core/error.h"
 #include "common/host/filter_parameters.h"
+#include "common/host/long_dialog.h"
 
 namespace meshcomplete {
 namespace host {
@@ -88,6 +89,7 @@ int FilterPlugin::postCondition(QAction* action) const {
 
 void FilterPlugin::initParameterSet(QAction* action, MeshDocument& document, RichParameterList& parameters) {
   add_parameters(declaration(action), document, parameters);
+  fit_dialog_to_screen(declaration(action).name);
 }
 
 void FilterPlugin::run(const FilterDeclaration& filter, MeshDocument& document,
