@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
 #include <set>
+#include <string>
 
 namespace meshcomplete {
 namespace {
@@ -22,14 +24,14 @@ PatchMesh polygon_fan(std::size_t n) {
   return PatchMesh(positions, n, triangles);
 }
 
-// Everything that must hold between the triangles and the adjacency, by brute force.
-void expect_consistent(const PatchMesh& mesh) {
-  std::map<std::pair<Index, Index>, Index> half_edges;
+using Sides = std::map<std::pair<Index, Index>, Index>;
+
+// What must hold between the triangles and the adjacency, by brute force. Lists the sides of the triangles, a
+// half-edge for each.
+void expect_adjacent(const PatchMesh& mesh, Sides& half_edges) {
   std::map<Index, std::set<Index>> neighbours;
-  std::size_t triangles = 0;
   for (Index t = 0; t < mesh.triangle_count(); ++t) {
     if (!mesh.alive(t)) continue;
-    ++triangles;
     for (Index h = 3 * t; h < 3 * t + 3; ++h) {
       ASSERT_TRUE(half_edges.emplace(std::pair(mesh.origin(h), mesh.target(h)), h).second)
           << "edge walked twice";
@@ -37,22 +39,16 @@ void expect_consistent(const PatchMesh& mesh) {
       neighbours[mesh.target(h)].insert(mesh.origin(h));
     }
   }
-  std::size_t boundary = 0;
+  std::set<Index> at_boundary;
   for (const auto& [ends, h] : half_edges) {
     const auto twin = half_edges.find({ends.second, ends.first});
-    if (twin == half_edges.end()) {
-      ASSERT_TRUE(mesh.is_boundary(h));
-      ++boundary;
-      ASSERT_EQ(ends.second, (ends.first + 1) % mesh.rim_size());
-    } else {
-      ASSERT_EQ(mesh.opposite(h), twin->second);
-    }
+    ASSERT_EQ(mesh.opposite(h), twin == half_edges.end() ? PatchMesh::none : twin->second);
+    if (twin == half_edges.end()) at_boundary.insert({ends.first, ends.second});
   }
-  ASSERT_EQ(boundary, mesh.rim_size());
-  std::size_t alive = 0;
   for (Index v = 0; v < mesh.vertex_count(); ++v) {
+    ASSERT_EQ(mesh.vertex_alive(v), neighbours.count(v) != 0);
     if (!mesh.vertex_alive(v)) continue;
-    ++alive;
+    ASSERT_EQ(mesh.at_boundary(v), at_boundary.count(v) != 0);
     std::set<Index> seen;
     std::size_t visits = 0;
     mesh.for_neighbours(v, [&](Index u) {
@@ -62,6 +58,21 @@ void expect_consistent(const PatchMesh& mesh) {
     ASSERT_EQ(visits, seen.size());
     ASSERT_EQ(seen, neighbours[v]);
   }
+}
+
+// Of a disk with its whole boundary on the rim.
+void expect_consistent(const PatchMesh& mesh) {
+  Sides half_edges;
+  ASSERT_NO_FATAL_FAILURE(expect_adjacent(mesh, half_edges));
+  std::size_t boundary = 0, triangles = 0, alive = 0;
+  for (const auto& [ends, h] : half_edges)
+    if (mesh.is_boundary(h)) {
+      ++boundary;
+      ASSERT_EQ(ends.second, (ends.first + 1) % mesh.rim_size());
+    }
+  ASSERT_EQ(boundary, mesh.rim_size());
+  for (Index t = 0; t < mesh.triangle_count(); ++t) triangles += mesh.alive(t);
+  for (Index v = 0; v < mesh.vertex_count(); ++v) alive += mesh.vertex_alive(v);
   ASSERT_EQ(static_cast<long>(alive) - static_cast<long>(half_edges.size() + boundary) / 2 +
                 static_cast<long>(triangles),
             1)
@@ -131,6 +142,194 @@ TEST(PatchMesh, RefusesACollapseThatWouldPinch) {
     if (mesh.on_rim(mesh.origin(h))) {
       EXPECT_FALSE(mesh.can_collapse(h)) << "the rim is never removed";
     }
+  }
+}
+
+// --- vertices between those of the rim
+// ---------------------------------------------------------------------------------
+
+// A disk of `outer` boundary vertices, or a ring with `inner` ones more; every third boundary vertex is on
+// the rim.
+PatchMesh with_steiner_points(Index outer, Index inner) {
+  const Index boundary = outer + inner;
+  std::vector<Index> number(boundary);
+  Index rim = 0, other = (outer + 2) / 3 + (inner + 2) / 3;
+  for (Index v = 0; v < boundary; ++v) number[v] = (v < outer ? v : v - outer) % 3 == 0 ? rim++ : other++;
+  std::vector<Vector3> positions(boundary);
+  for (Index v = 0; v < boundary; ++v) {
+    const double angle = 2 * pi * (v < outer ? double(v) / outer : double(v - outer) / inner);
+    positions[number[v]] = (v < outer ? 1.0 : 0.5) * Vector3(std::cos(angle), std::sin(angle), 0);
+  }
+  std::vector<Triangle> triangles;
+  if (inner == 0)
+    for (Index i = 1; i + 1 < outer; ++i) triangles.push_back({number[0], number[i], number[i + 1]});
+  // Round the ring, whichever side is behind goes on.
+  for (Index i = 0, j = 0; inner > 0 && i + j < boundary;) {
+    const Index a = number[i % outer], b = number[outer + j % inner];
+    if (std::uint64_t(i) * inner <= std::uint64_t(j) * outer)
+      triangles.push_back({a, number[++i % outer], b});
+    else
+      triangles.push_back({a, number[outer + ++j % inner], b});
+  }
+  return PatchMesh(positions, rim, triangles);
+}
+
+std::set<Triangle> triangles_of(const PatchMesh& mesh) {
+  std::set<Triangle> all;
+  for (Index t = 0; t < mesh.triangle_count(); ++t) {
+    if (!mesh.alive(t)) continue;
+    Triangle corners = mesh.triangles()[t];
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    all.insert(corners);
+  }
+  return all;
+}
+
+struct Shape {
+  bool manifold = true;  // every edge with one or two faces, every vertex with one fan, no two faces alike
+  long euler = 0;
+  std::size_t boundary = 0;
+};
+
+// By definition, without any adjacency of ours.
+Shape shape_of(const std::set<Triangle>& triangles) {
+  Shape shape;
+  std::set<std::pair<Index, Index>> sides;
+  std::set<std::set<Index>> faces;
+  std::map<Index, std::map<Index, Index>> links;  // round each vertex from one neighbour to the next
+  for (const Triangle& t : triangles) {
+    shape.manifold &=
+        faces.insert({t[0], t[1], t[2]}).second && std::set<Index>(t.begin(), t.end()).size() == 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      shape.manifold &= sides.emplace(t[k], t[(k + 1) % 3]).second;
+      shape.manifold &= links[t[k]].emplace(t[(k + 1) % 3], t[(k + 2) % 3]).second;
+    }
+  }
+  std::size_t undirected = 0;
+  for (const auto& [a, b] : sides) {
+    const bool paired = sides.count({b, a}) != 0;
+    shape.boundary += !paired;
+    undirected += !paired || a < b;
+  }
+  for (const auto& entry : links) {
+    const std::map<Index, Index>& link = entry.second;
+    std::set<Index> ends;
+    for (const auto& [from, to] : link) ends.insert(to);
+    Index start = link.begin()->first;
+    for (const auto& [from, to] : link)
+      if (!ends.count(from)) start = from;
+    std::size_t length = 0;
+    Index at = start;
+    for (auto step = link.find(at); step != link.end() && length <= link.size(); step = link.find(at)) {
+      at = step->second;
+      ++length;
+      if (at == start) break;
+    }
+    shape.manifold &= length == link.size();
+  }
+  shape.euler =
+      static_cast<long>(links.size()) - static_cast<long>(undirected) + static_cast<long>(triangles.size());
+  return shape;
+}
+
+std::set<Triangle> merged(const PatchMesh& mesh, Index dead, Index gone, Index kept) {
+  std::set<Triangle> all;
+  for (Index t = 0; t < mesh.triangle_count(); ++t) {
+    if (!mesh.alive(t) || t == dead) continue;
+    Triangle corners = mesh.triangles()[t];
+    std::replace(corners.begin(), corners.end(), gone, kept);
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    all.insert(corners);
+  }
+  return all;
+}
+
+// Tries both ends of a boundary half-edge, compares the answer and the outcome with merging the two vertices
+// in the bare list of triangles.
+void collapse_if_possible(PatchMesh& mesh, Index h, bool onto_target, std::map<std::string, int>& cases) {
+  const Index gone = onto_target ? mesh.origin(h) : mesh.target(h),
+              kept = onto_target ? mesh.target(h) : mesh.origin(h), apex = mesh.apex(h);
+  const bool can = mesh.can_collapse_at_boundary(h, onto_target);
+  if (!mesh.is_boundary(h) || mesh.on_rim(gone)) {
+    ASSERT_FALSE(can);
+    return;
+  }
+  const std::set<Triangle> before = triangles_of(mesh), after = merged(mesh, h / 3, gone, kept);
+  const Shape old_shape = shape_of(before), new_shape = shape_of(after);
+  ASSERT_TRUE(old_shape.manifold);
+  const bool good = new_shape.manifold && after.size() + 1 == before.size() &&
+                    new_shape.euler == old_shape.euler && new_shape.boundary + 1 == old_shape.boundary;
+  const bool at_corner = mesh.is_boundary(PatchMesh::next(h)) || mesh.is_boundary(PatchMesh::previous(h));
+  ASSERT_EQ(can, good && !at_corner);
+  if (!can) {
+    ++cases[at_corner ? "refused at a corner" : "refused"];
+    return;
+  }
+  ++cases[mesh.on_rim(kept) ? "onto the rim" : "onto another"];
+  ++cases[mesh.at_boundary(apex) ? "apex at the boundary" : "apex inside"];
+  mesh.collapse_at_boundary(h, onto_target);
+  ASSERT_EQ(triangles_of(mesh), after);
+  ASSERT_FALSE(mesh.vertex_alive(gone));
+  Sides half_edges;
+  expect_adjacent(mesh, half_edges);
+}
+
+TEST(PatchMesh, CollapsesAtTheBoundaryKeepAManifold) {
+  std::map<std::string, int> cases;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    PatchMesh mesh = with_steiner_points(6 + seed, seed % 2 == 0 ? 3 + seed / 2 : 0);
+    for (int step = 0; step < 150; ++step) {
+      const Index h = random() % static_cast<Index>(3 * mesh.triangle_count());
+      if (!mesh.alive(h / 3)) continue;
+      const Index choice = random() % 8;
+      if (choice == 0) {
+        mesh.insert(h / 3, Vector3::Zero());
+      } else if (mesh.is_boundary(h)) {
+        ASSERT_NO_FATAL_FAILURE(collapse_if_possible(mesh, h, choice % 2 == 0, cases)) << "seed " << seed;
+      } else if (choice < 4) {
+        const Index c = mesh.apex(h), d = mesh.apex(mesh.opposite(h));
+        if (c != d && !mesh.joined(c, d)) mesh.flip(h);
+      } else if (choice < 5) {
+        mesh.split(h, Vector3::Zero());
+      } else if (mesh.can_collapse(h)) {
+        mesh.collapse(h);
+      }
+      Sides half_edges;
+      ASSERT_NO_FATAL_FAILURE(expect_adjacent(mesh, half_edges)) << "seed " << seed << " step " << step;
+    }
+  }
+  for (const char* name : {"onto the rim", "onto another", "apex at the boundary", "apex inside", "refused",
+                           "refused at a corner"})
+    EXPECT_GT(cases[name], 20) << name;
+}
+
+// Until none is left: a triangulation of nothing but the rim and the inside.
+TEST(PatchMesh, CollapsesTakeAllSteinerPointsOut) {
+  for (Index inner : {0u, 9u}) {
+    PatchMesh mesh = with_steiner_points(12, inner);
+    if (inner == 0) mesh.insert(4, Vector3::Zero());
+    const Shape before = shape_of(triangles_of(mesh));
+    for (bool again = true; again;) {
+      again = false;
+      for (Index h = 0; h < 3 * mesh.triangle_count(); ++h)
+        for (bool onto_target : {false, true})
+          if (mesh.alive(h / 3) && mesh.can_collapse_at_boundary(h, onto_target)) {
+            mesh.collapse_at_boundary(h, onto_target);
+            again = true;
+          }
+    }
+    const Shape after = shape_of(triangles_of(mesh));
+    EXPECT_TRUE(after.manifold);
+    EXPECT_EQ(after.euler, before.euler);
+    std::size_t left = 0;
+    for (Index v = static_cast<Index>(mesh.rim_size()); v < mesh.vertex_count(); ++v)
+      left += mesh.vertex_alive(v) && mesh.at_boundary(v);
+    EXPECT_EQ(left, inner == 0 ? 2u : 0u) << "only the tips of ears";
+    const Index vertices = static_cast<Index>(mesh.rim_size());
+    mesh.compact();
+    EXPECT_EQ(mesh.rim_size(), vertices);
+    EXPECT_EQ(shape_of(triangles_of(mesh)).euler, before.euler);
   }
 }
 

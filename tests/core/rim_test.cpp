@@ -136,6 +136,114 @@ TEST(Rim, EdgeLengthsFollowTheMeshAlongTheRim) {
   EXPECT_GT(collected.edge_length[55], 0.8);
 }
 
+// --- several loops
+// --------------------------------------------------------------------------------------------------
+
+/// What `collect_rim` says of several loops, by the definitions: every face at a loop is in the ring (right
+/// for meshes whose vertices' fans are all at the loops).
+void expect_rim_of_loops(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops) {
+  const Rim rim = collect_rim(mesh, build_topology(mesh), loops);
+  std::vector<Index> vertices, next;
+  for (const BoundaryLoop& loop : loops) {
+    const Index first = static_cast<Index>(vertices.size()), n = static_cast<Index>(loop.vertices.size());
+    for (Index i = 0; i < n; ++i) {
+      vertices.push_back(loop.vertices[i]);
+      next.push_back(first + (i + 1) % n);
+    }
+  }
+  EXPECT_EQ(rim.next, next);
+  ASSERT_EQ(rim.positions.size(), vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    EXPECT_EQ(rim.positions[i], mesh.vertices[vertices[i]]);
+    EXPECT_EQ(rim.ring.vertices[i], rim.positions[i]);
+  }
+  const auto places = [&](Index v) {
+    std::vector<Index> all;
+    for (Index i = 0; i < vertices.size(); ++i)
+      if (vertices[i] == v) all.push_back(i);
+    return all;
+  };
+  std::set<std::pair<Index, Index>> chords;
+  std::multiset<std::array<Positions, 3>> faces, found;
+  std::vector<double> sum(vertices.size(), 0), count(vertices.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    bool at_loop = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index v = t[k], w = t[(k + 1) % 3];
+      at_loop |= !places(v).empty();
+      for (Index end : {v, w})
+        for (Index a : places(end)) {
+          sum[a] += (mesh.vertices[v] - mesh.vertices[w]).norm();
+          ++count[a];
+        }
+      for (Index a : places(v))
+        for (Index b : places(w))
+          if (next[a] != b && next[b] != a) chords.emplace(std::min(a, b), std::max(a, b));
+    }
+    if (at_loop) faces.insert(face_key(mesh, t));
+  }
+  EXPECT_EQ(rim.forbidden, ForbiddenEdges(chords.begin(), chords.end()));
+  for (const Triangle& t : rim.ring.triangles) found.insert(face_key(rim.ring, t));
+  EXPECT_EQ(found, faces) << "each face once, however many loops it is at";
+  // Means of the ring's edges at each vertex, then three rounds of averaging along the loop.
+  std::vector<double> length(vertices.size());
+  for (std::size_t i = 0; i < length.size(); ++i) length[i] = sum[i] / count[i];
+  for (int round = 0; round < 3; ++round) {
+    std::vector<double> smooth(length.size(), 0);
+    for (std::size_t i = 0; i < length.size(); ++i) {
+      smooth[i] += 0.5 * length[i] + 0.25 * length[next[i]];
+      smooth[next[i]] += 0.25 * length[i];
+    }
+    length = smooth;
+  }
+  ASSERT_EQ(rim.edge_length.size(), length.size());
+  for (std::size_t i = 0; i < length.size(); ++i) EXPECT_NEAR(rim.edge_length[i], length[i], 1e-12);
+}
+
+TEST(Rim, OfSeveralLoops) {
+  for (const TriangleMesh& mesh :
+       {test::sphere_with_holes(6, 3, 0.3), test::sphere_with_island(), test::open_cylinder(7, 1),
+        test::open_cylinder(5, 2), test::shuffled(test::sphere_with_island(), 2)})
+    expect_rim_of_loops(mesh, loops_of(mesh));
+}
+
+// A tube of one row of squares: every vertex of one loop is joined to two of the other.
+TEST(Rim, EdgesBetweenTwoLoopsAreForbidden) {
+  const TriangleMesh mesh = test::open_cylinder(7, 1);
+  const std::vector<BoundaryLoop> loops = loops_of(mesh);
+  ASSERT_EQ(loops.size(), 2u);
+  const Rim rim = collect_rim(mesh, build_topology(mesh), loops);
+  EXPECT_EQ(rim.forbidden.size(), 14u);
+  for (const auto& [a, b] : rim.forbidden) {
+    EXPECT_LT(a, 7u);
+    EXPECT_GE(b, 7u);
+  }
+  EXPECT_TRUE(rim_of(mesh, loops[0]).forbidden.empty());
+}
+
+// Two holes that touch at a vertex: it is in the list twice, and the neighbours that it has in the one loop
+// are forbidden to its other place.
+TEST(Rim, AVertexInTwoLoopsIsThereTwice) {
+  const TriangleMesh mesh = test::sphere_with_touching_holes();
+  const std::vector<BoundaryLoop> loops = loops_of(mesh);
+  ASSERT_EQ(loops.size(), 2u);
+  expect_rim_of_loops(mesh, loops);
+  const Rim rim = collect_rim(mesh, build_topology(mesh), loops);
+  std::vector<std::pair<Index, Index>> twice;
+  for (Index i = 0; i < rim.positions.size(); ++i)
+    for (Index j = i + 1; j < rim.positions.size(); ++j)
+      if (rim.positions[i] == rim.positions[j]) twice.emplace_back(i, j);
+  ASSERT_EQ(twice.size(), 1u);
+  const auto forbidden = [&](Index a, Index b) {
+    return std::binary_search(rim.forbidden.begin(), rim.forbidden.end(),
+                              std::make_pair(std::min(a, b), std::max(a, b)));
+  };
+  const auto [first, second] = twice[0];
+  EXPECT_TRUE(forbidden(first, rim.next[second]));
+  EXPECT_TRUE(forbidden(second, rim.next[first]));
+  EXPECT_FALSE(forbidden(first, rim.next[first]));
+}
+
 // --- obstructed edges
 // --------------------------------------------------------------------------------------------------
 

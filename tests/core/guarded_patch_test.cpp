@@ -1,0 +1,359 @@
+#include "common/core/guarded_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "common/core/patch.h"
+#include "common/core/rim.h"
+#include "common/core/triangle_intersection.h"
+#include "tests/support/meshes.h"
+#include "tests/support/patches.h"
+
+namespace meshcomplete {
+namespace {
+
+using Corners = std::array<Vector3, 3>;
+
+Corners corners_of(const PatchMesh& patch, Index triangle) {
+  const Triangle& t = patch.triangles()[triangle];
+  return {patch.position(t[0]), patch.position(t[1]), patch.position(t[2])};
+}
+
+/// A rough sphere with a hole, the cap that was cut out of it as its patch, and something else nearby.
+struct Scene {
+  TriangleMesh mesh;
+  BoundaryLoop loop;
+  InputNeighbourhood input;
+  ForbiddenEdges forbidden;
+  std::vector<Corners> obstacles;
+  PatchMesh patch;
+
+  /// With `steiner` every edge of the rim is divided in the patch; its middle is exact in doubles.
+  Scene(const test::CutOut& cut, bool steiner)
+      : mesh(cut.mesh),
+        loop(test::loops_of(mesh).at(0)),
+        input(mesh),
+        forbidden(collect_rim(mesh, build_topology(mesh), loop).forbidden),
+        patch(editable(cut.patch, steiner)) {
+    for (const Vector3& at : {Vector3(0.1, 0.05, 1.15), Vector3(-0.15, 0.1, 0.8), Vector3(0, -0.2, 1.1)})
+      obstacles.push_back({at, at + Vector3(0.1, 0.02, 0.03), at + Vector3(0.02, 0.1, -0.04)});
+  }
+
+  PatchMesh editable(const Patch& cap, bool steiner) const {
+    std::map<Index, Index> number;
+    std::vector<Vector3> positions;
+    for (Index v : loop.vertices) {
+      number[v] = static_cast<Index>(positions.size());
+      positions.push_back(mesh.vertices[v]);
+    }
+    const Index rim = static_cast<Index>(positions.size());
+    for (Index i = 0; i < cap.vertices.size(); ++i) {
+      number[cap.input_vertices + i] = static_cast<Index>(positions.size());
+      positions.push_back(cap.vertices[i]);
+    }
+    std::vector<Triangle> triangles;
+    for (Triangle t : cap.triangles) {
+      for (Index& v : t) v = number.at(v);
+      std::optional<std::size_t> at_rim;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (t[k] < rim && t[(k + 1) % 3] == (t[k] + 1) % rim) at_rim = k;
+      if (!steiner || !at_rim) {
+        triangles.push_back(t);
+        continue;
+      }
+      const Index a = t[*at_rim], b = t[(*at_rim + 1) % 3], c = t[(*at_rim + 2) % 3];
+      const Index middle = static_cast<Index>(positions.size());
+      positions.push_back(0.5 * (positions[a] + positions[b]));
+      triangles.push_back({a, middle, c});
+      triangles.push_back({middle, b, c});
+    }
+    return PatchMesh(positions, rim, triangles);
+  }
+
+  GuardedPatch guard() {
+    GuardedPatch guarded(patch, input, forbidden, obstacles);
+    for (const auto& [vertex, face] : resting()) guarded.rest(vertex, face);
+    return guarded;
+  }
+
+  /// Steiner points, and the face on whose side each lies.
+  std::map<Index, Index> resting() const {
+    std::map<Index, Index> faces;
+    const Index rim = static_cast<Index>(patch.rim_size());
+    for (Index v = rim; v < patch.vertex_count(); ++v)
+      for (Index i = 0; i < rim; ++i)
+        if (patch.position(v) == 0.5 * (patch.position(i) + patch.position((i + 1) % rim)))
+          faces[v] = loop.faces[i];
+    return faces;
+  }
+
+  bool is_free(const PatchMesh& edited, Index triangle, const std::map<Index, Index>& rests) const {
+    const Corners one = corners_of(edited, triangle);
+    if (collinear(one[0], one[1], one[2])) return false;
+    for (Index t = 0; t < edited.triangle_count(); ++t)
+      if (edited.alive(t) && t != triangle && meet_improperly(one, corners_of(edited, t))) return false;
+    for (const Corners& obstacle : obstacles)
+      if (meet_improperly(one, obstacle)) return false;
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      bool ignored = false;
+      for (Index v : edited.triangles()[triangle]) {
+        const auto at = rests.find(v);
+        ignored |= at != rests.end() && at->second == t;
+      }
+      const Triangle& f = mesh.triangles[t];
+      if (!ignored && meet_improperly(one, {mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]]}))
+        return false;
+    }
+    return true;
+  }
+
+  bool is_forbidden(Index a, Index b) const {
+    return std::binary_search(forbidden.begin(), forbidden.end(),
+                              std::make_pair(std::min(a, b), std::max(a, b)));
+  }
+
+  /// Whether every triangle of `edited` that the patch did not have is free, and no edge is forbidden.
+  bool allows(const PatchMesh& edited, const std::map<Index, Index>& rests) const {
+    for (Index t = 0; t < edited.triangle_count(); ++t) {
+      if (!edited.alive(t)) continue;
+      const bool old =
+          t < patch.triangle_count() && patch.alive(t) && corners_of(edited, t) == corners_of(patch, t);
+      if (!old && !is_free(edited, t, rests)) return false;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        if (!edited.is_boundary(h) && edited.on_rim(edited.origin(h)) && edited.on_rim(edited.target(h)) &&
+            is_forbidden(edited.origin(h), edited.target(h)))
+          return false;
+    }
+    return true;
+  }
+};
+
+struct Step {
+  char kind = 'm';  // move, split, flip, collapse, boundary collapse
+  Index at = 0;     // vertex or half-edge
+  Vector3 to = Vector3::Zero();
+  bool onto_target = true;
+};
+
+Step random_step(const PatchMesh& patch, std::mt19937& random) {
+  const auto uniform = [&] { return random() * 0x1p-32; };
+  Step step;
+  step.kind = "mmsfcbb"[random() % 7];
+  // Boundary edges are few: those steps look for one.
+  do {
+    step.at = static_cast<Index>(random() % (3 * patch.triangle_count()));
+  } while (!patch.alive(step.at / 3) ||
+           (step.kind == 'b' && !patch.is_boundary(step.at) && random() % 500 != 0));
+  const Vector3& a = patch.position(patch.origin(step.at));
+  const Vector3& b = patch.position(patch.target(step.at));
+  const double reach = (b - a).norm() * (random() % 4 == 0 ? 2.0 : 0.3);
+  const Vector3 offset = reach * Vector3(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
+  step.onto_target = random() % 2 == 0;
+  if (step.kind == 's') step.to = 0.5 * (a + b) + offset;
+  if (step.kind == 'm') {
+    step.at = patch.origin(step.at);
+    step.to = a + offset;
+  }
+  return step;
+}
+
+/// Makes the step without any guard; false when the patch would not be a manifold.
+bool make(PatchMesh& patch, const Step& step) {
+  switch (step.kind) {
+    case 'm':
+      if (patch.on_rim(step.at)) return false;
+      patch.move(step.at, as_stored(step.to));
+      return true;
+    case 's':
+      if (patch.is_boundary(step.at)) return false;
+      patch.split(step.at, as_stored(step.to));
+      return true;
+    case 'f':
+      if (!can_flip(patch, step.at, {})) return false;
+      patch.flip(step.at);
+      return true;
+    case 'c':
+      if (!patch.can_collapse(step.at)) return false;
+      patch.collapse(step.at);
+      return true;
+    default:
+      if (!patch.can_collapse_at_boundary(step.at, step.onto_target)) return false;
+      patch.collapse_at_boundary(step.at, step.onto_target);
+      return true;
+  }
+}
+
+bool make(GuardedPatch& guarded, const Step& step) {
+  switch (step.kind) {
+    case 'm':
+      return guarded.move(step.at, step.to);
+    case 's':
+      return guarded.split(step.at, step.to) != GuardedPatch::none;
+    case 'f':
+      return guarded.flip(step.at);
+    case 'c':
+      return guarded.collapse(step.at);
+    default:
+      return guarded.collapse_at_boundary(step.at, step.onto_target);
+  }
+}
+
+void expect_same(const PatchMesh& a, const PatchMesh& b) {
+  ASSERT_EQ(a.triangles(), b.triangles());
+  ASSERT_EQ(a.positions(), b.positions());
+  for (Index h = 0; h < 3 * a.triangle_count(); ++h)
+    if (a.alive(h / 3)) {
+      ASSERT_EQ(a.opposite(h), b.opposite(h));
+    }
+}
+
+test::CutOut rough_cap(unsigned seed, double angle) {
+  const TriangleMesh sphere = test::rough_sphere(3, 0.06, seed);
+  return test::cut_out(sphere, [&](Index f) {
+    Vector3 middle = Vector3::Zero();
+    for (Index v : sphere.triangles[f]) middle += sphere.vertices[v];
+    return middle.normalized().z() > std::cos(angle);
+  });
+}
+
+// Random steps, small and wild, on a patch with and without Steiner points: each is made just when a look at
+// all triangles finds nothing in the way, and one that is refused leaves everything as it was.
+TEST(GuardedPatch, RefusesExactlyWhatWouldMeetSomething) {
+  std::map<char, std::array<int, 3>> counts;  // by kind: made, refused by the guard, not a manifold
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    Scene scene(rough_cap(seed, 0.45), seed % 2 == 0);
+    std::mt19937 random(seed);
+    GuardedPatch guarded = scene.guard();
+    const std::map<Index, Index> rests = scene.resting();
+    ASSERT_EQ(!rests.empty(), seed % 2 == 0);
+    for (int i = 0; i < 400; ++i) {
+      const Step step = random_step(scene.patch, random);
+      const PatchMesh before = scene.patch;
+      PatchMesh edited = scene.patch;
+      const bool manifold = make(edited, step);
+      const bool allowed = manifold && scene.allows(edited, rests);
+      ASSERT_EQ(make(guarded, step), allowed) << "seed " << seed << " step " << i << " of kind " << step.kind;
+      ASSERT_NO_FATAL_FAILURE(expect_same(scene.patch, allowed ? edited : before));
+      ++counts[step.kind][allowed ? 0 : manifold ? 1 : 2];
+    }
+  }
+  for (char kind : {'m', 's', 'f', 'c'}) {
+    EXPECT_GT(counts[kind][0], 20) << kind;
+    EXPECT_GT(counts[kind][1], 20) << kind;
+  }
+  EXPECT_GT(counts['b'][0], 20);
+}
+
+TEST(GuardedPatch, KeepsACleanPatchClean) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Scene scene(rough_cap(seed, 0.6), false);
+    GuardedPatch guarded = scene.guard();
+    std::mt19937 random(seed);
+    int made = 0;
+    for (int i = 0; i < 3000; ++i) made += make(guarded, random_step(scene.patch, random));
+    EXPECT_GT(made, 500);
+    for (Index t = 0; t < scene.patch.triangle_count(); ++t)
+      if (scene.patch.alive(t)) {
+        ASSERT_TRUE(guarded.is_clean(t));
+      }
+    PatchMesh compact = scene.patch;
+    compact.compact();
+    Patch patch;
+    const Index rim = static_cast<Index>(compact.rim_size());
+    patch.input_vertices = static_cast<Index>(scene.mesh.vertices.size());
+    for (Index v = rim; v < compact.vertex_count(); ++v) patch.vertices.push_back(compact.position(v));
+    for (Triangle t : compact.triangles()) {
+      for (Index& v : t) v = v < rim ? scene.loop.vertices[v] : patch.input_vertices + v - rim;
+      patch.triangles.push_back(t);
+    }
+    const PatchCheck check = check_patch(scene.input, patch, {&scene.loop});
+    EXPECT_TRUE(check.passed()) << describe(check.defect);
+  }
+}
+
+TEST(GuardedPatch, CleanIsWhatMeetsNothing) {
+  Scene scene(rough_cap(7, 0.5), false);
+  // Two vertices are pulled through the others' triangles without a guard.
+  for (Index back : {1u, 2u}) {
+    const Index vertex = static_cast<Index>(scene.patch.vertex_count()) - back;
+    scene.patch.move(vertex, as_stored(scene.patch.position(vertex) + Vector3(0.5 - 0.9 * back, 0.3, -0.1)));
+  }
+  const GuardedPatch guarded = scene.guard();
+  int clean = 0, unclean = 0;
+  for (Index t = 0; t < scene.patch.triangle_count(); ++t) {
+    const bool expected = scene.is_free(scene.patch, t, {});
+    ASSERT_EQ(guarded.is_clean(t), expected);
+    ++(expected ? clean : unclean);
+  }
+  EXPECT_GT(clean, 5);
+  EXPECT_GT(unclean, 5);
+}
+
+TEST(GuardedPatch, PositionsAreRoundedToWhatIsStored) {
+  Scene scene(rough_cap(3, 0.5), false);
+  GuardedPatch guarded = scene.guard();
+  const Index vertex = static_cast<Index>(scene.patch.vertex_count() - 1);
+  const Vector3 to = scene.patch.position(vertex) + Vector3(1e-9, 1e-4, 0);
+  ASSERT_TRUE(guarded.move(vertex, to));
+  EXPECT_EQ(scene.patch.position(vertex), as_stored(to));
+  Index half_edge = 0;
+  while (scene.patch.is_boundary(half_edge)) ++half_edge;
+  const Vector3 middle = 0.49999 * scene.patch.position(scene.patch.origin(half_edge)) +
+                         0.50001 * scene.patch.position(scene.patch.target(half_edge));
+  const Index split = guarded.split(half_edge, middle);
+  ASSERT_NE(split, GuardedPatch::none);
+  EXPECT_EQ(scene.patch.position(split), as_stored(middle));
+  const Vector3 nowhere(std::numeric_limits<double>::quiet_NaN(), 0, 0);
+  EXPECT_FALSE(guarded.move(vertex, nowhere));
+  EXPECT_EQ(guarded.split(half_edge, nowhere), GuardedPatch::none);
+}
+
+// A Steiner point lies in the middle of a side of the input: its triangles would meet that face along half of
+// the side, which counts as meeting for everything else.
+TEST(GuardedPatch, RestingOnASideIsNotMeeting) {
+  Scene scene(rough_cap(2, 0.5), true);
+  GuardedPatch strict(scene.patch, scene.input, scene.forbidden, scene.obstacles);
+  const GuardedPatch resting = scene.guard();
+  int at_steiner_points = 0;
+  for (Index t = 0; t < scene.patch.triangle_count(); ++t) {
+    bool steiner = false;
+    for (Index v : scene.patch.triangles()[t]) steiner |= scene.resting().count(v) != 0;
+    at_steiner_points += steiner;
+    EXPECT_EQ(strict.is_clean(t), !steiner);
+    EXPECT_TRUE(resting.is_clean(t));
+  }
+  EXPECT_GT(at_steiner_points, 10);
+}
+
+// Two corners of a square that the mesh joins elsewhere: the patch's edge may not become that diagonal, by a
+// flip or by a collapse.
+TEST(GuardedPatch, NeverMakesAnEdgeThatTheMeshHas) {
+  const TriangleMesh far = test::tetrahedron();
+  const InputNeighbourhood input(far);
+  const std::vector<Corners> no_obstacles;
+  const std::vector<Vector3> square = {{10, 0, 0}, {14, 0, 1}, {14, 4, 0}, {10, 4, 1}};
+  for (const ForbiddenEdges& forbidden : {ForbiddenEdges{{0, 2}}, ForbiddenEdges{{0, 3}}, ForbiddenEdges{}}) {
+    const bool free = forbidden != ForbiddenEdges{{0, 2}};
+    PatchMesh halves(square, 4, {{0, 1, 3}, {1, 2, 3}});
+    GuardedPatch flips(halves, input, forbidden, no_obstacles);
+    EXPECT_EQ(flips.flip(1), free);
+    std::vector<Vector3> positions = square;
+    positions.emplace_back(11.5, 1.75, 3);
+    PatchMesh fan(positions, 4, {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
+    GuardedPatch collapses(fan, input, forbidden, no_obstacles);
+    Index half_edge = 0;
+    while (fan.origin(half_edge) != 4 || fan.target(half_edge) != 2) ++half_edge;
+    EXPECT_EQ(collapses.collapse(half_edge), free) << "onto 2 makes the edge 0 2";
+  }
+}
+
+}  // namespace
+}  // namespace meshcomplete
