@@ -130,7 +130,9 @@ Verdict Decomposer::judge(const Pending& pending) const {
   if (verdict.volume.triangles.empty()) return verdict;
   std::sort(verdict.volume.triangles.begin(), verdict.volume.triangles.end());
   verdict.volume.kind = VolumeKind::crossed;
-  verdict.split = !last && !sides_agree(mesh_, verdict.volume.triangles, box);
+  if (sides_agree(mesh_, verdict.volume.triangles, box)) return verdict;
+  verdict.split = !last;
+  if (last) verdict.volume.kind = VolumeKind::unresolved;
   return verdict;
 }
 

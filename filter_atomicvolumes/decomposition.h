@@ -18,7 +18,7 @@ enum class VolumeKind : std::uint8_t {
   vertex,      ///< a hole cube round one boundary vertex, met only by triangles and boundary edges at it
   edge,        ///< a hole cube with a piece of one boundary edge, met only by that edge's triangle
   crossed,     ///< inside/outside: met by the mesh, but not by its boundary
-  unresolved,  ///< a hole cube that is not trivial at the greatest depth
+  unresolved,  ///< a cube at the greatest depth that is none of these: cut into convex cells
 };
 
 struct Volume {

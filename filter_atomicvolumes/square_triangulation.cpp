@@ -1,6 +1,7 @@
 #include "filter_atomicvolumes/square_triangulation.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
@@ -17,6 +18,14 @@ using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using ConstrainedDelaunay =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
+// With crossings, and a record of the points along each constraint.
+struct PointNumber {
+  Index value = VolumeVertex::none;
+};
+using NumberedBase = CGAL::Triangulation_vertex_base_with_info_2<PointNumber, Kernel>;
+using CrossingDelaunay = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<NumberedBase, FaceBase>, CGAL::Exact_intersections_tag>;
+using CrossingTriangulation = CGAL::Constrained_triangulation_plus_2<CrossingDelaunay>;
 
 constexpr Index none = VolumeVertex::none;
 
@@ -38,6 +47,22 @@ Number number(Wide value) {
   return negative ? -sum : sum;
 }
 
+Number number(const ExactInteger& numerator, const ExactInteger& denominator) {
+  using Exact = Kernel::Exact_kernel::FT;
+  const auto exact = [](const ExactInteger& value) {
+    constexpr int bits = 48;
+    const Exact base(std::ldexp(1.0, bits));
+    const ExactInteger magnitude = abs(value);
+    Exact sum(0);
+    for (int place = 576 / bits - 1; place >= 0; --place) {
+      const ExactInteger part = (magnitude >> (place * bits)) & ((std::int64_t{1} << bits) - 1);
+      sum = sum * base + Exact(part.convert_to<double>());
+    }
+    return value < 0 ? Exact(-sum) : sum;
+  };
+  return Number(Exact(exact(numerator) / exact(denominator)));
+}
+
 int sign(Wide value) { return (value > 0) - (value < 0); }
 
 class SquareTriangulator {
@@ -49,6 +74,7 @@ class SquareTriangulator {
 
   void cross(Index triangle);
   SquareTriangulation finish();
+  SquareTriangulation finish(Index number, SquareOverlay& overlay);
 
  private:
   // Where a triangle's side goes through the square's plane.
@@ -70,6 +96,10 @@ class SquareTriangulator {
                          const LatticePoint& end);
   void plain_triangles();
   void constrained_triangles();
+  using Handle = CrossingTriangulation::Vertex_handle;
+  void place(CrossingTriangulation& triangulation, Index number, SquareOverlay& overlay);
+  std::vector<Index> chain(const CrossingTriangulation& triangulation, Handle from, Handle to,
+                           CrossingTriangulation::Constraint_id constraint) const;
 
   const LatticeMesh& mesh_;
   const LeafSquare& square_;
@@ -255,6 +285,86 @@ SquareTriangulation SquareTriangulator::finish() {
   return std::move(result_);
 }
 
+// The points of the overlay among those of the square.
+void SquareTriangulator::place(CrossingTriangulation& triangulation, Index number, SquareOverlay& overlay) {
+  for (const SquareOverlay::Point& p : overlay.points) {
+    std::array<Number, 2> at;
+    for (int m = 0; m < 2; ++m) {
+      const int axis = m == 0 ? i_ : j_;
+      at[m] = meshcomplete::number(
+          p.point->coordinates[axis] + (p.origin[axis] - square_.low[axis]) * p.point->weight,
+          p.point->weight);
+    }
+    const Handle handle = triangulation.insert(Kernel::Point_2(at[0], at[1]));
+    Index& place = handle->info().value;
+    if (place == none) {
+      place = static_cast<Index>(result_.points.size());
+      remember(p.key ? *p.key : VertexKey{VertexKey::cut_in_square, number, place, 0}, at[0], at[1], none);
+    } else if (p.key) {
+      if (result_.points[place].key.kind == VertexKey::lattice_point) throw Coincidence();
+      result_.points[place].key = *p.key;
+    }
+    overlay.places.push_back(place);
+  }
+}
+
+std::vector<Index> SquareTriangulator::chain(const CrossingTriangulation& triangulation, Handle from,
+                                             Handle to,
+                                             CrossingTriangulation::Constraint_id constraint) const {
+  std::vector<Index> points;
+  for (auto v = triangulation.vertices_in_constraint_begin(constraint);
+       v != triangulation.vertices_in_constraint_end(constraint); ++v)
+    points.push_back((*v)->info().value);
+  if (points.front() != from->info().value) std::reverse(points.begin(), points.end());
+  if (points.front() != from->info().value || points.back() != to->info().value) throw Coincidence();
+  return points;
+}
+
+SquareTriangulation SquareTriangulator::finish(Index number, SquareOverlay& overlay) {
+  CrossingTriangulation triangulation;
+  std::vector<Index> same;  // of the square's own points, the first one at each place
+  for (Index i = 0; i < exact_.size(); ++i) {
+    const Handle handle = triangulation.insert(exact_[i]);
+    // Boundary edges of the mesh may lie on each other.
+    if (handle->info().value == none) handle->info().value = i;
+    same.push_back(handle->info().value);
+  }
+  place(triangulation, number, overlay);
+  std::vector<Handle> handles(result_.points.size());
+  for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
+    handles[v->info().value] = v;
+  std::vector<CrossingTriangulation::Constraint_id> segments, lines;
+  for (SquareTriangulation::Segment& s : result_.segments) {
+    s.from = same[s.from];
+    s.to = same[s.to];
+    if (s.from == s.to) throw Coincidence();
+    segments.push_back(triangulation.insert_constraint(handles[s.from], handles[s.to]));
+  }
+  for (const auto& [from, to] : overlay.lines)
+    lines.push_back(
+        triangulation.insert_constraint(handles[overlay.places[from]], handles[overlay.places[to]]));
+  for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v) {
+    if (v->info().value != none) continue;
+    const Index place = v->info().value = static_cast<Index>(result_.points.size());
+    remember({VertexKey::cut_in_square, number, place, 0}, v->point().x(), v->point().y(), none);
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    overlay.chains.push_back(chain(triangulation, handles[overlay.places[overlay.lines[i][0]]],
+                                   handles[overlay.places[overlay.lines[i][1]]], lines[i]));
+  std::vector<SquareTriangulation::Segment> parts;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const SquareTriangulation::Segment& s = result_.segments[i];
+    const std::vector<Index> points = chain(triangulation, handles[s.from], handles[s.to], segments[i]);
+    for (std::size_t k = 0; k + 1 < points.size(); ++k)
+      parts.push_back({points[k], points[k + 1], s.triangle});
+  }
+  result_.segments = std::move(parts);
+  for (auto face = triangulation.finite_faces_begin(); face != triangulation.finite_faces_end(); ++face)
+    result_.triangles.push_back(
+        {face->vertex(0)->info().value, face->vertex(1)->info().value, face->vertex(2)->info().value});
+  return std::move(result_);
+}
+
 }  // namespace
 
 VertexKey VertexKey::at(const LatticePoint& p) {
@@ -275,6 +385,11 @@ VertexKey VertexKey::vertex(Index input_vertex) { return {VertexKey::input_verte
 
 VertexKey VertexKey::apex(Index cube) { return {edge_in_cube, cube, 0, 0}; }
 
+VertexKey VertexKey::cut_on(int axis, const LatticePoint& p, std::size_t number) {
+  return {cut_on_line, number << 2 | static_cast<std::uint64_t>(axis),
+          static_cast<std::uint64_t>(p[(axis + 1) % 3]), static_cast<std::uint64_t>(p[(axis + 2) % 3])};
+}
+
 std::size_t VertexKeyHash::operator()(const VertexKey& key) const {
   // A multiplicative mix: the coordinates of lattice points end in many zeros.
   std::uint64_t h = key.kind;
@@ -290,6 +405,14 @@ SquareTriangulation triangulate_square(const LatticeMesh& mesh, const Octree& oc
   SquareTriangulator triangulator(mesh, octree, square);
   for (Index triangle : candidates) triangulator.cross(triangle);
   return triangulator.finish();
+}
+
+SquareTriangulation triangulate_square(const LatticeMesh& mesh, const Octree& octree,
+                                       const LeafSquare& square, const std::vector<Index>& candidates,
+                                       Index number, SquareOverlay& overlay) {
+  SquareTriangulator triangulator(mesh, octree, square);
+  for (Index triangle : candidates) triangulator.cross(triangle);
+  return triangulator.finish(number, overlay);
 }
 
 }  // namespace meshcomplete

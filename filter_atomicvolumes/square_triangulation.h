@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/core/octree.h"
+#include "filter_atomicvolumes/exact_planes.h"
 #include "filter_atomicvolumes/lattice_mesh.h"
 
 namespace meshcomplete {
@@ -22,7 +24,17 @@ struct TangledCube {};
 /// What a vertex of the decomposition is, so that the same one is known again from every cube and square it
 /// belongs to.
 struct VertexKey {
-  enum Kind : std::uint64_t { lattice_point, edge_in_plane, triangle_on_line, input_vertex, edge_in_cube };
+  enum Kind : std::uint64_t {
+    lattice_point,
+    edge_in_plane,
+    triangle_on_line,
+    input_vertex,
+    edge_in_cube,
+    cut_on_line,
+    cut_in_square,
+    cut_in_cube,
+    middle_of_cut
+  };
   Kind kind;
   std::uint64_t a, b, c;
 
@@ -33,6 +45,8 @@ struct VertexKey {
   static VertexKey crossing(Index triangle, int axis, const LatticePoint& p);
   static VertexKey vertex(Index input_vertex);
   static VertexKey apex(Index cube);
+  /// Where the cuts of convex cells meet a line of the octree: one of them, counted along the line.
+  static VertexKey cut_on(int axis, const LatticePoint& p, std::size_t number);
 
   bool operator==(const VertexKey& o) const { return kind == o.kind && a == o.a && b == o.b && c == o.c; }
 };
@@ -62,10 +76,32 @@ struct SquareTriangulation {
   std::vector<Segment> segments;
 };
 
+/// What the triangulation of a square has to hold beside the mesh and the octree's corners.
+struct SquareOverlay {
+  struct Point {
+    const ExactPoint* point;
+    LatticePoint origin;           ///< of its coordinates
+    std::optional<VertexKey> key;  ///< needed on the square's sides
+  };
+  std::vector<Point> points;
+  std::vector<std::array<Index, 2>> lines;  ///< between points
+
+  /// Filled in: which point of the triangulation each point is, and the points along each line from end to
+  /// end.
+  std::vector<Index> places;
+  std::vector<std::vector<Index>> chains;
+};
+
 /// `candidates` are the mesh triangles that may cross the square. Exact: what is near in doubles is told
 /// apart by exact arithmetic (CGAL's constrained Delaunay triangulation). Throws `Coincidence`,
 /// `TangledCube`. Thread-safe. Cost: O(n log n) for n points.
 SquareTriangulation triangulate_square(const LatticeMesh& mesh, const Octree& octree,
                                        const LeafSquare& square, const std::vector<Index>& candidates);
+
+/// The same with points and lines beside; lines and the mesh may cross each other. `number` is the square's
+/// among all squares, for the keys of new points.
+SquareTriangulation triangulate_square(const LatticeMesh& mesh, const Octree& octree,
+                                       const LeafSquare& square, const std::vector<Index>& candidates,
+                                       Index number, SquareOverlay& overlay);
 
 }  // namespace meshcomplete

@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "filter_atomicvolumes/cell_cubes.h"
+#include "filter_atomicvolumes/cell_faces.h"
 #include "filter_atomicvolumes/crossed_cube.h"
 #include "filter_atomicvolumes/hole_cube.h"
 
@@ -43,19 +45,24 @@ void for_each(std::size_t count, const Progress& progress, Work&& work) {
 class ComplexBuilder {
  public:
   ComplexBuilder(const LatticeMesh& mesh, Decomposition& decomposition)
-      : mesh_(mesh), decomposition_(decomposition), octree_(decomposition.octree) {
+      : mesh_(mesh),
+        decomposition_(decomposition),
+        octree_(decomposition.octree),
+        cell_cubes_(mesh, decomposition, complex_.squares) {
     complex_.squares = leaf_squares(octree_);
     list_squares();
   }
 
-  VolumeComplex build(const Progress& progress);
+  /// Absent when hole cubes turned out to be unresolved, and were marked so.
+  std::optional<VolumeComplex> build(const Progress& progress);
 
  private:
   struct SquareData {
     SquareTriangulation triangulation;
     std::vector<Index> vertex;  // number of each point in the complex
     std::vector<std::array<Cell, 2>>
-        cells;  // below and above each triangle; of the whole square when not triangulated
+        cells;          // below and above each triangle; of the whole square when not triangulated
+    CellSquare convex;  // where convex cells end on it; its triangulation is the one above
   };
 
   bool is_hole(Index cube) const {
@@ -66,8 +73,14 @@ class ComplexBuilder {
     return cube != Octree::none && decomposition_.volumes[cube].kind == kind;
   }
   bool is_triangulated(Index square) const {
-    return is_hole(complex_.squares[square].below) || is_hole(complex_.squares[square].above);
+    return is_hole(complex_.squares[square].below) || is_hole(complex_.squares[square].above) ||
+           cell_cubes_.touch(square);
   }
+  std::vector<Index> squares_of(Index cube) const {
+    const auto at = [&](std::size_t i) { return squares_of_.begin() + static_cast<std::ptrdiff_t>(i); };
+    return {at(first_square_[cube]), at(first_square_[cube + 1])};
+  }
+  void fill_with_cells();
   void list_squares();
   void triangulate(const Progress& progress);
   void number_vertices();
@@ -94,6 +107,8 @@ class ComplexBuilder {
   std::vector<std::size_t> first_square_;  // of each cube, in `squares_of_`
   std::vector<Index> squares_of_;
   std::unordered_map<VertexKey, Index, VertexKeyHash> number_;
+  CellCubes cell_cubes_;
+  bool unresolved_ = false;  // more cubes than there were
 };
 
 // The squares of every cube, one after the other.
@@ -117,9 +132,16 @@ void ComplexBuilder::triangulate(const Progress& progress) {
   for_each(complex_.squares.size(), progress, [&](std::size_t i) {
     const LeafSquare& s = complex_.squares[i];
     if (!is_triangulated(static_cast<Index>(i))) return;
-    const Index cube = is_hole(s.below) ? s.below : s.above;
+    // All cubes at a square know the triangles that meet it.
+    const Index cube = s.below != Octree::none ? s.below : s.above;
+    const std::vector<Index>& candidates = decomposition_.volumes[cube].triangles;
+    if (cell_cubes_.touch(static_cast<Index>(i))) {
+      data_[i].convex = cell_cubes_.triangulate(static_cast<Index>(i), candidates);
+      data_[i].triangulation = std::move(data_[i].convex.triangulation);
+      return;
+    }
     try {
-      data_[i].triangulation = triangulate_square(mesh_, octree_, s, decomposition_.volumes[cube].triangles);
+      data_[i].triangulation = triangulate_square(mesh_, octree_, s, candidates);
     } catch (const TangledCube&) {
       const std::lock_guard<std::mutex> lock(mutex);
       for (Index side : {s.below, s.above})
@@ -127,7 +149,10 @@ void ComplexBuilder::triangulate(const Progress& progress) {
     }
   });
   for (Index cube = 0; cube < tangled.size(); ++cube)
-    if (tangled[cube]) decomposition_.volumes[cube].kind = VolumeKind::unresolved;
+    if (tangled[cube]) {
+      decomposition_.volumes[cube].kind = VolumeKind::unresolved;
+      unresolved_ = true;
+    }
 }
 
 Index ComplexBuilder::number_of(const VolumeVertex& vertex) {
@@ -150,9 +175,8 @@ void ComplexBuilder::number_blank_leaves() {
   complex_.cube_cells.assign(octree_.size(), unknown_cell);
   for (Index cube = 0; cube < octree_.size(); ++cube) {
     if (!octree_.is_leaf(cube)) continue;
-    const bool blank = has_kind(cube, VolumeKind::blank);
-    if (!blank && !has_kind(cube, VolumeKind::unresolved)) continue;
-    if (blank) complex_.cube_cells[cube] = static_cast<Cell>(complex_.nodes++);
+    if (!has_kind(cube, VolumeKind::blank)) continue;
+    complex_.cube_cells[cube] = static_cast<Cell>(complex_.nodes++);
     for (std::size_t i = first_square_[cube]; i < first_square_[cube + 1]; ++i)
       for (Index t = 0; t < data_[squares_of_[i]].cells.size(); ++t)
         cell(squares_of_[i], t, cube) = complex_.cube_cells[cube];
@@ -186,8 +210,7 @@ void ComplexBuilder::add_tetrahedra(Index cube, const HoleCubeSurface& surface) 
       !surface.contradicting && (has_kind(cube, VolumeKind::vertex) || surface.rim_ends.size() == 2);
   if (!resolved) {
     decomposition_.volumes[cube].kind = VolumeKind::unresolved;
-    for (const HoleCubeSurface::Base& base : surface.bases)
-      cell(base.square, base.triangle, cube) = unknown_cell;
+    unresolved_ = true;
     return;
   }
   const Index apex = apex_of(cube, surface);
@@ -220,6 +243,31 @@ void ComplexBuilder::fill_hole_cubes(const Progress& progress) {
   std::vector<HoleCubeSurface> surfaces(cubes.size());
   for_each(cubes.size(), progress, [&](std::size_t i) { surfaces[i] = surface_of(cubes[i]); });
   for (std::size_t i = 0; i < cubes.size(); ++i) add_tetrahedra(cubes[i], surfaces[i]);
+}
+
+void ComplexBuilder::fill_with_cells() {
+  for (std::size_t i = 0; i < cell_cubes_.cubes().size(); ++i) {
+    const Index cube = cell_cubes_.cubes()[i];
+    const std::vector<Index> squares = squares_of(cube);
+    const auto place = [&](Index square) { return complex_.squares[square].above == cube ? 1 : 0; };
+    CellSurface surface;
+    for (Index s : squares) {
+      const SquareData& data = data_[s];
+      for (const auto& [vertex, point] : data.convex.points[place(s)])
+        surface.vertices[vertex] = data.vertex[point];
+      for (const auto& [edge, points] : data.convex.chains[place(s)]) {
+        std::vector<Index>& chain = surface.chains[edge];
+        chain.clear();
+        for (Index point : points) chain.push_back(data.vertex[point]);
+      }
+    }
+    const std::vector<Cell> volumes = add_cells(
+        mesh_, cube, cell_cubes_.cells(i), surface, [&](const VolumeVertex& v) { return number_of(v); },
+        complex_);
+    for (Index s : squares)
+      for (Index t = 0; t < data_[s].cells.size(); ++t)
+        cell(s, t, cube) = volumes[data_[s].convex.cells[place(s)][t]];
+  }
 }
 
 // Whether the mesh crosses a square between two crossed cubes.
@@ -359,12 +407,19 @@ void ComplexBuilder::add_square_faces() {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-VolumeComplex ComplexBuilder::build(const Progress& progress) {
+std::optional<VolumeComplex> ComplexBuilder::build(const Progress& progress) {
+  cell_cubes_.list();
+  for_each(cell_cubes_.cubes().size(), progress,
+           [&](std::size_t i) { cell_cubes_.cut(i, squares_of(cell_cubes_.cubes()[i])); });
+  cell_cubes_.meet();
   triangulate(progress);
+  if (unresolved_) return std::nullopt;
   progress.update(0.5);
   number_vertices();
   number_blank_leaves();
   fill_hole_cubes(progress);
+  if (unresolved_) return std::nullopt;
+  fill_with_cells();
   progress.update(0.7);
   label_crossed_cubes(progress);
   progress.update(0.9);
@@ -376,7 +431,8 @@ VolumeComplex ComplexBuilder::build(const Progress& progress) {
 }  // namespace
 
 VolumeComplex build_complex(const LatticeMesh& mesh, Decomposition& decomposition, const Progress& progress) {
-  return ComplexBuilder(mesh, decomposition).build(progress);
+  for (;;)
+    if (auto complex = ComplexBuilder(mesh, decomposition).build(progress)) return std::move(*complex);
 }
 
 }  // namespace meshcomplete
