@@ -4,6 +4,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "filter_atomicvolumes/patch_rounding.h"
+
 namespace meshcomplete {
 namespace {
 
@@ -204,6 +206,11 @@ void SteinerRemover::relax_around(Index steiner) {
 }
 
 std::size_t SteinerRemover::run(const Progress& progress) {
+  std::vector<Index> unrounded;
+  for (Index v = static_cast<Index>(mesh_.rim_size()); v < mesh_.vertex_count(); ++v)
+    if (edge_of_[v] == none && mesh_.vertex_alive(v) && as_stored(mesh_.position(v)) != mesh_.position(v))
+      unrounded.push_back(v);
+  round_vertices(mesh_, guarded_, unrounded, progress);
   for (int pass = 0; pass < most_passes && !steiner_.empty(); ++pass) {
     std::vector<Index> left;
     for (Index steiner : steiner_) {
@@ -253,11 +260,14 @@ RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, 
       local[v] = static_cast<Index>(order.size());
       order.push_back(v);
     }
-  // What will stay is rounded to what will be stored; Steiner points are as exact as they can be.
+  // What will stay is rounded to what will be stored; Steiner points are as exact as they can be, and so is
+  // all that may be finer than what can be stored.
+  const bool fine = std::any_of(sheet.vertices.begin(), sheet.vertices.end(),
+                                [](const SheetVertex& one) { return one.cut; });
   std::vector<Vector3> positions;
   for (Index v : order) {
     const SheetVertex& one = sheet.vertices[v];
-    positions.push_back(one.input == SheetVertex::none && one.rim_edge == SheetVertex::none
+    positions.push_back(one.input == SheetVertex::none && one.rim_edge == SheetVertex::none && !fine
                             ? as_stored(one.position)
                             : one.position);
   }

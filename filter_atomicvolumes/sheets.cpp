@@ -186,7 +186,7 @@ void Splitter::number_fans() {
       number[fan] = static_cast<Index>(vertices_.size());
       const VolumeVertex& original = surface_.vertices[v];
       const bool on_rim = original.input != none || original.rim_edge != none;
-      SheetVertex one{original.position, none, none};
+      SheetVertex one{original.position, none, none, original.key.is_cut()};
       if (at_rim[fan]) {
         one.input = original.input;
         one.rim_edge = original.rim_edge;
@@ -233,7 +233,7 @@ void Splitter::add_midpoints() {
     // A triangle whose side was split already is not the one of this half-edge any more.
     const Index a = triangles_[h / 3][h % 3], b = triangles_[h / 3][next(h) % 3];
     if (triangles_[other / 3][other % 3] != b || triangles_[other / 3][next(other) % 3] != a) continue;
-    vertices_.push_back({0.5 * (vertices_[a].position + vertices_[b].position), none, none});
+    vertices_.push_back({0.5 * (vertices_[a].position + vertices_[b].position), none, none, false});
     doubled_.push_back(1);
     for (Index side : {h, other}) {
       Triangle& t = triangles_[side / 3];

@@ -15,6 +15,7 @@ struct SheetVertex {
   Vector3 position;
   Index input = none;     ///< the boundary vertex that it is
   Index rim_edge = none;  ///< the boundary half-edge whose Steiner point it is
+  bool cut = false;  ///< where planes cut convex cells: its neighbours may be finer than single precision
 };
 
 /// One connected piece of the patch, manifold, with its boundary on the rims.

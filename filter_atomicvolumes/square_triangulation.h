@@ -48,6 +48,7 @@ struct VertexKey {
   /// Where the cuts of convex cells meet a line of the octree: one of them, counted along the line.
   static VertexKey cut_on(int axis, const LatticePoint& p, std::size_t number);
 
+  bool is_cut() const { return kind >= cut_on_line; }  ///< made by the planes between convex cells
   bool operator==(const VertexKey& o) const { return kind == o.kind && a == o.a && b == o.b && c == o.c; }
 };
 
