@@ -14,7 +14,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/core/box_grid.h"
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
@@ -88,6 +87,9 @@ class Run {
     return std::any_of(report_.holes.begin(), report_.holes.end(),
                        [&](const HoleReport& h) { return targeted(h); });
   }
+  /// Open sheets beside a surface whose holes are closed are islands, and their rims are closed too, together
+  /// with that of the hole round them if that takes less area.
+  void target_islands();
   VolumeSolution solve(const Progress& progress) const;
   void take_pieces(const LabelledSurface& surface);
   void finish_pieces(const Progress& progress);
@@ -129,11 +131,22 @@ VolumeSolution Run::solve(const Progress& progress) const {
   return std::move(*best);
 }
 
-// A rim that no patch should close by itself, but that may be part of a larger hole: that of an island.
+void Run::target_islands() {
+  if (!anything_to_do()) return;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    HoleReport& hole = report_.holes[i];
+    if (loops_[i].defect != LoopDefect::open_sheet || hole.reason != describe(LoopDefect::open_sheet))
+      continue;
+    hole.outcome = HoleOutcome::failed;
+    hole.reason.clear();
+  }
+}
+
+// A rim that no patch should close by itself, but that may be part of a larger hole: that of a single
+// triangle.
 bool Run::companion(std::size_t loop) const {
-  const LoopDefect defect = loops_[loop].defect;
-  return (defect == LoopDefect::open_sheet || defect == LoopDefect::isolated_triangle) &&
-         report_.holes[loop].reason == describe(defect);
+  return loops_[loop].defect == LoopDefect::isolated_triangle &&
+         report_.holes[loop].reason == describe(LoopDefect::isolated_triangle);
 }
 
 void Run::take_pieces(const LabelledSurface& surface) {
@@ -369,6 +382,7 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
       trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
   report.holes = select_holes(mesh, loops, selection, options.holes);
   Run run(mesh, topology, loops, options, report);
+  run.target_islands();
   clock.end_of("finding the holes");
   AtomicVolumesFigures figures;
   if (run.anything_to_do()) {

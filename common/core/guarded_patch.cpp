@@ -22,7 +22,7 @@ GuardedPatch::GuardedPatch(PatchMesh& patch, const InputNeighbourhood& input, co
     : patch_(patch), input_(input), forbidden_(forbidden), obstacles_(obstacles) {
   for (Index t = 0; t < patch.triangle_count(); ++t)
     if (patch.alive(t)) update(t);
-  for (Index i = 0; i < obstacles.size(); ++i) obstacle_grid_.set(i, box_round(obstacles[i]));
+  for (Index i = 0; i < obstacles.size(); ++i) obstacle_boxes_.set(i, box_round(obstacles[i]));
 }
 
 void GuardedPatch::rest(Index vertex, Index input_triangle) {
@@ -35,7 +35,7 @@ GuardedPatch::Corners GuardedPatch::corners(const Triangle& t) const {
 }
 
 void GuardedPatch::update(Index triangle) {
-  grid_.set(triangle, box_round(corners(patch_.triangles()[triangle])));
+  boxes_.set(triangle, box_round(corners(patch_.triangles()[triangle])));
 }
 
 void GuardedPatch::star(Index vertex, std::vector<Index>& triangles) const {
@@ -68,11 +68,11 @@ bool GuardedPatch::input_is_free(const Fresh& one) const {
 bool GuardedPatch::is_free(const Fresh& one, const std::vector<Index>& replaced) const {
   if (collinear(one.corners[0], one.corners[1], one.corners[2])) return false;
   const Box box = box_round(one.corners);
-  return grid_.visit(box, [&](Index t) {
+  return boxes_.visit(box, [&](Index t) {
     if (contains(replaced, t)) return true;
     const Corners other = corners(patch_.triangles()[t]);
     return collinear(other[0], other[1], other[2]) || !meet_improperly(one.corners, other);
-  }) && obstacle_grid_.visit(box, [&](Index i) {
+  }) && obstacle_boxes_.visit(box, [&](Index i) {
     return !meet_improperly(one.corners, obstacles_[i]);
   }) && input_is_free(one);
 }
@@ -171,7 +171,7 @@ bool GuardedPatch::collapse(Index h) {
     if (patch_.alive(t))
       update(t);
     else
-      grid_.remove(t);
+      boxes_.remove(t);
   return true;
 }
 
@@ -187,7 +187,7 @@ bool GuardedPatch::collapse_at_boundary(Index h, bool onto_target) {
     if (patch_.alive(t))
       update(t);
     else
-      grid_.remove(t);
+      boxes_.remove(t);
   return true;
 }
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/core/box_grid.h"
+#include "common/core/dynamic_box_tree.h"
 #include "common/core/mesh.h"
 #include "common/core/patch_check.h"
 #include "common/core/patch_mesh.h"
@@ -64,7 +64,7 @@ class GuardedPatch {
   const ForbiddenEdges& forbidden_;
   const std::vector<Corners>& obstacles_;
   std::vector<Index> resting_;  // by vertex
-  BoxGrid grid_, obstacle_grid_;
+  DynamicBoxTree boxes_, obstacle_boxes_;
 };
 
 }  // namespace meshcomplete

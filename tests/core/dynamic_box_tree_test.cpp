@@ -1,4 +1,4 @@
-#include "common/core/box_grid.h"
+#include "common/core/dynamic_box_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ class RandomBoxes {
   std::mt19937_64 random_;
 };
 
-std::vector<Index> visited(const BoxGrid& grid, const Box& box) {
+std::vector<Index> visited(const DynamicBoxTree& grid, const Box& box) {
   std::vector<Index> found;
   EXPECT_TRUE(grid.visit(box, [&](Index number) {
     found.push_back(number);
@@ -52,10 +52,10 @@ std::vector<Index> expected(const std::map<Index, Box>& boxes, const Box& box) {
 }
 
 // Boxes come, go and are replaced; every question is compared with looking at all of them.
-TEST(BoxGrid, FindsTheBoxesThatMeetAGivenOne) {
+TEST(DynamicBoxTree, FindsTheBoxesThatMeetAGivenOne) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     RandomBoxes random(seed);
-    BoxGrid grid;
+    DynamicBoxTree grid;
     std::map<Index, Box> boxes;
     std::size_t found = 0;
     for (int step = 0; step < 3000; ++step) {
@@ -88,8 +88,8 @@ TEST(BoxGrid, FindsTheBoxesThatMeetAGivenOne) {
   }
 }
 
-TEST(BoxGrid, StopsWhenToldTo) {
-  BoxGrid grid;
+TEST(DynamicBoxTree, StopsWhenToldTo) {
+  DynamicBoxTree grid;
   const Box unit{{0, 0, 0}, {1, 1, 1}};
   for (Index i = 0; i < 10; ++i) grid.set(i, unit);
   int visits = 0;
@@ -103,16 +103,32 @@ TEST(BoxGrid, StopsWhenToldTo) {
   EXPECT_FALSE(grid.holds(1000));
 }
 
-TEST(BoxGrid, TouchingIsMeeting) {
-  BoxGrid grid;
+TEST(DynamicBoxTree, TouchingIsMeeting) {
+  DynamicBoxTree grid;
   grid.set(7, {{0, 0, 0}, {1, 1, 1}});
   EXPECT_EQ(visited(grid, {{1, 1, 1}, {2, 2, 2}}), std::vector<Index>{7});
   EXPECT_TRUE(visited(grid, {{1, std::nextafter(1.0, 2.0), 1}, {2, 2, 2}}).empty());
 }
 
+// Of boxes in one place the cells at every size may have the same number: growing changes the size only.
+TEST(DynamicBoxTree, ABoxMayGrowAndShrinkInPlace) {
+  DynamicBoxTree grid;
+  const auto cube = [](double low, double side) {
+    return Box{{low, low, low}, {low + side, low + side, low + side}};
+  };
+  for (Index i = 0; i < 3000; ++i) grid.set(i, cube(i, 0.01));  // so that cells are looked up
+  for (double side : {0.01, 30.0, 0.001, 900.0, 0.01}) {
+    grid.set(0, cube(0, side));
+    for (double at : {0.0, 0.009, 20.5, 800.5}) {
+      const std::vector<Index> found = visited(grid, cube(at, 1e-4));
+      EXPECT_EQ(std::count(found.begin(), found.end(), 0u), at <= side) << side << " " << at;
+    }
+  }
+}
+
 // Points far from the origin: the cells of their size have no numbers that 64 bits could hold.
-TEST(BoxGrid, FindsPointsFarFromTheOrigin) {
-  BoxGrid grid;
+TEST(DynamicBoxTree, FindsPointsFarFromTheOrigin) {
+  DynamicBoxTree grid;
   std::map<Index, Box> boxes;
   const auto point = [](double x, double y, double z) { return Box{{x, y, z}, {x, y, z}}; };
   // So many that the grid looks at cells rather than at all that it holds.
