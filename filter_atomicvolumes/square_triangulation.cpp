@@ -300,8 +300,7 @@ void SquareTriangulator::place(CrossingTriangulation& triangulation, Index numbe
     if (place == none) {
       place = static_cast<Index>(result_.points.size());
       remember(p.key ? *p.key : VertexKey{VertexKey::cut_in_square, number, place, 0}, at[0], at[1], none);
-    } else if (p.key) {
-      if (result_.points[place].key.kind == VertexKey::lattice_point) throw Coincidence();
+    } else if (p.key && result_.points[place].key.kind != VertexKey::lattice_point) {
       result_.points[place].key = *p.key;
     }
     overlay.places.push_back(place);
