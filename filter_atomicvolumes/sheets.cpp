@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace meshcomplete {
@@ -57,6 +58,7 @@ class Splitter {
   static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
   void number_fans();
   void add_midpoints();
+  void divide(Index triangle, const Index* middle);
   void separate_doubles();
   std::vector<Sheet> pieces() const;
 
@@ -218,31 +220,44 @@ void Splitter::separate_doubles() {
       vertices_[v].position -= separation * shortest[v] * normal[v].normalized();
 }
 
-// Two sheets that share both ends of an edge, because neither end is doubled, get different middles.
+// Two pairs of faces that share both ends of an edge, because neither end is doubled, get different middles.
+// The faces at a rim keep theirs, which the mesh has too.
 void Splitter::add_midpoints() {
-  std::unordered_map<std::uint64_t, int> uses;
-  std::vector<Index> extra;
+  const auto key = [&](Index h) {
+    return pair_key(triangles_[h / 3][h % 3], triangles_[h / 3][next(h) % 3]);
+  };
+  std::unordered_set<std::uint64_t> taken;
+  for (Index h = 0; h < partner_.size(); ++h)
+    if (partner_[h] == none) taken.insert(key(h));
+  std::vector<Index> middle(partner_.size(), none);
   for (Index h = 0; h < partner_.size(); ++h) {
-    const Index a = triangles_[h / 3][h % 3], b = triangles_[h / 3][next(h) % 3];
-    if (partner_[h] != none && partner_[h] < h) continue;
-    if (uses[pair_key(a, b)]++ > 0 && partner_[h] != none) extra.push_back(h);
-  }
-  for (Index h : extra) {
-    const Index middle = static_cast<Index>(vertices_.size());
-    const Index other = partner_[h];
-    // A triangle whose side was split already is not the one of this half-edge any more.
-    const Index a = triangles_[h / 3][h % 3], b = triangles_[h / 3][next(h) % 3];
-    if (triangles_[other / 3][other % 3] != b || triangles_[other / 3][next(other) % 3] != a) continue;
-    vertices_.push_back({0.5 * (vertices_[a].position + vertices_[b].position), none, none, false});
+    if (partner_[h] == none || partner_[h] < h || taken.insert(key(h)).second) continue;
+    middle[h] = middle[partner_[h]] = static_cast<Index>(vertices_.size());
+    const Vector3 &a = vertices_[triangles_[h / 3][h % 3]].position,
+                  &b = vertices_[triangles_[h / 3][next(h) % 3]].position;
+    vertices_.push_back({0.5 * (a + b), none, none, false});
     doubled_.push_back(1);
-    for (Index side : {h, other}) {
-      Triangle& t = triangles_[side / 3];
-      Triangle half = t;
-      half[side % 3] = middle;
-      t[next(side) % 3] = middle;
-      triangles_.push_back(half);
-      volumes_.push_back(LabelledSurface::Between(volumes_[side / 3]));
-    }
+  }
+  for (Index t = 0; 3 * t < middle.size(); ++t) divide(t, &middle[3 * t]);
+}
+
+// A fan from one of the middles of the triangle's sides: every new edge ends at a middle, so that there is no
+// other like it.
+void Splitter::divide(Index triangle, const Index* middle) {
+  std::vector<Index> outline;
+  std::size_t first = 0;
+  for (int k = 0; k < 3; ++k) {
+    outline.push_back(triangles_[triangle][k]);
+    if (middle[k] == none) continue;
+    first = outline.size();
+    outline.push_back(middle[k]);
+  }
+  if (outline.size() == 3) return;
+  std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(first), outline.end());
+  triangles_[triangle] = {outline[0], outline[1], outline[2]};
+  for (std::size_t i = 2; i + 1 < outline.size(); ++i) {
+    triangles_.push_back({outline[0], outline[i], outline[i + 1]});
+    volumes_.push_back(LabelledSurface::Between(volumes_[triangle]));
   }
 }
 

@@ -8,6 +8,9 @@
 #include <random>
 #include <set>
 #include <string>
+#include <vector>
+
+#include "tests/support/complexes.h"
 
 namespace meshcomplete {
 namespace {
@@ -185,51 +188,8 @@ std::set<Triangle> triangles_of(const PatchMesh& mesh) {
   return all;
 }
 
-struct Shape {
-  bool manifold = true;  // every edge with one or two faces, every vertex with one fan, no two faces alike
-  long euler = 0;
-  std::size_t boundary = 0;
-};
-
-// By definition, without any adjacency of ours.
-Shape shape_of(const std::set<Triangle>& triangles) {
-  Shape shape;
-  std::set<std::pair<Index, Index>> sides;
-  std::set<std::set<Index>> faces;
-  std::map<Index, std::map<Index, Index>> links;  // round each vertex from one neighbour to the next
-  for (const Triangle& t : triangles) {
-    shape.manifold &=
-        faces.insert({t[0], t[1], t[2]}).second && std::set<Index>(t.begin(), t.end()).size() == 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-      shape.manifold &= sides.emplace(t[k], t[(k + 1) % 3]).second;
-      shape.manifold &= links[t[k]].emplace(t[(k + 1) % 3], t[(k + 2) % 3]).second;
-    }
-  }
-  std::size_t undirected = 0;
-  for (const auto& [a, b] : sides) {
-    const bool paired = sides.count({b, a}) != 0;
-    shape.boundary += !paired;
-    undirected += !paired || a < b;
-  }
-  for (const auto& entry : links) {
-    const std::map<Index, Index>& link = entry.second;
-    std::set<Index> ends;
-    for (const auto& [from, to] : link) ends.insert(to);
-    Index start = link.begin()->first;
-    for (const auto& [from, to] : link)
-      if (!ends.count(from)) start = from;
-    std::size_t length = 0;
-    Index at = start;
-    for (auto step = link.find(at); step != link.end() && length <= link.size(); step = link.find(at)) {
-      at = step->second;
-      ++length;
-      if (at == start) break;
-    }
-    shape.manifold &= length == link.size();
-  }
-  shape.euler =
-      static_cast<long>(links.size()) - static_cast<long>(undirected) + static_cast<long>(triangles.size());
-  return shape;
+test::Shape shape_of(const std::set<Triangle>& triangles) {
+  return test::shape_of(std::vector<Triangle>(triangles.begin(), triangles.end()));
 }
 
 std::set<Triangle> merged(const PatchMesh& mesh, Index dead, Index gone, Index kept) {
@@ -255,7 +215,7 @@ void collapse_if_possible(PatchMesh& mesh, Index h, bool onto_target, std::map<s
     return;
   }
   const std::set<Triangle> before = triangles_of(mesh), after = merged(mesh, h / 3, gone, kept);
-  const Shape old_shape = shape_of(before), new_shape = shape_of(after);
+  const test::Shape old_shape = shape_of(before), new_shape = shape_of(after);
   ASSERT_TRUE(old_shape.manifold);
   const bool good = new_shape.manifold && after.size() + 1 == before.size() &&
                     new_shape.euler == old_shape.euler && new_shape.boundary + 1 == old_shape.boundary;
@@ -309,7 +269,7 @@ TEST(PatchMesh, CollapsesTakeAllSteinerPointsOut) {
   for (Index inner : {0u, 9u}) {
     PatchMesh mesh = with_steiner_points(12, inner);
     if (inner == 0) mesh.insert(4, Vector3::Zero());
-    const Shape before = shape_of(triangles_of(mesh));
+    const test::Shape before = shape_of(triangles_of(mesh));
     for (bool again = true; again;) {
       again = false;
       for (Index h = 0; h < 3 * mesh.triangle_count(); ++h)
@@ -319,7 +279,7 @@ TEST(PatchMesh, CollapsesTakeAllSteinerPointsOut) {
             again = true;
           }
     }
-    const Shape after = shape_of(triangles_of(mesh));
+    const test::Shape after = shape_of(triangles_of(mesh));
     EXPECT_TRUE(after.manifold);
     EXPECT_EQ(after.euler, before.euler);
     std::size_t left = 0;

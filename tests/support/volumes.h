@@ -1,0 +1,160 @@
+// A mesh in a root cube at a random place, divided into atomic volumes, and what is known of inside and
+// outside by other means.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/core/mesh.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/patch_check.h"
+#include "filter_atomicvolumes/decomposition.h"
+#include "filter_atomicvolumes/labelling.h"
+#include "filter_atomicvolumes/lattice_mesh.h"
+#include "filter_atomicvolumes/square_triangulation.h"
+#include "filter_atomicvolumes/volume_complex.h"
+#include "tests/support/meshes.h"
+
+namespace meshcomplete {
+namespace test {
+
+/// Uniform in [0, 1), the same on every platform.
+inline double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// A mesh and all that questions about it on a lattice need. The root is a cube 1.5 to 2 times as large as
+/// the mesh, which lies at a random place in it.
+class PlacedMesh {
+ public:
+  PlacedMesh(TriangleMesh given, std::uint64_t seed)
+      : mesh(std::move(given)),
+        topology(build_topology(mesh)),
+        neighbourhood(mesh),
+        lattice_mesh{mesh, topology, neighbourhood, root(mesh, seed)} {}
+  PlacedMesh(const PlacedMesh&) = delete;
+  PlacedMesh& operator=(const PlacedMesh&) = delete;
+
+  const TriangleMesh mesh;
+  const MeshTopology topology;
+  const InputNeighbourhood neighbourhood;
+  const LatticeMesh lattice_mesh;
+
+ private:
+  static Lattice root(const TriangleMesh& mesh, std::uint64_t seed) {
+    Vector3 low = mesh.vertices[mesh.triangles[0][0]], high = low;
+    for (const Triangle& t : mesh.triangles)
+      for (Index v : t) {
+        low = low.cwiseMin(mesh.vertices[v]);
+        high = high.cwiseMax(mesh.vertices[v]);
+      }
+    std::mt19937_64 random(seed);
+    const double length = (high - low).maxCoeff(), side = (1.5 + 0.5 * uniform(random)) * length;
+    Vector3 origin = low;
+    for (int k = 0; k < 3; ++k) origin[k] -= 0.05 * side + uniform(random) * (0.9 * side - (high - low)[k]);
+    return Lattice(origin, side);
+  }
+};
+
+/// Space divided round a mesh.
+struct Division {
+  Decomposition decomposition;
+  VolumeComplex complex;
+};
+
+/// Absent when two features coincide in this root. Crossed cubes that disagree are split until none are left.
+inline std::optional<Division> divide(const PlacedMesh& placed, const DecompositionOptions& options = {}) {
+  try {
+    Division division{decompose(placed.lattice_mesh, options), {}};
+    division.complex = build_complex(placed.lattice_mesh, division.decomposition);
+    for (int round = 0; round < 8 && !division.complex.disagreeing.empty(); ++round) {
+      split_further(division.decomposition, placed.lattice_mesh, options, division.complex.disagreeing);
+      division.complex = build_complex(placed.lattice_mesh, division.decomposition);
+    }
+    return division;
+  } catch (const Coincidence&) {
+    return std::nullopt;
+  }
+}
+
+/// How often a closed mesh winds round a point: 1 inside, 0 outside. By the solid angles of the faces.
+inline double winding_number(const TriangleMesh& mesh, const Vector3& point) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vector3 a = mesh.vertices[t[0]] - point, b = mesh.vertices[t[1]] - point,
+                  c = mesh.vertices[t[2]] - point;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (4 * 3.14159265358979323846);
+}
+
+// --- meshes to complete
+// -------------------------------------------------------------------------------------------
+
+/// A torus without what lies within `radius` of three points on it, one of them on its inner side.
+inline TriangleMesh torus_with_missing_parts(double radius = 0.35) {
+  TriangleMesh mesh = torus(24, 12);
+  for (const Vector3& centre : {Vector3(1.4, 0, 0), Vector3(-0.5, 0.4, 0.1), Vector3(-0.6, -0.8, 0.4)})
+    mesh = without_ball(mesh, centre, radius);
+  return mesh;
+}
+
+/// A sphere without a band round its middle: two caps apart, one hole with two boundary loops.
+inline TriangleMesh two_caps(int subdivisions = 2, double height = 0.3) {
+  const TriangleMesh sphere = icosphere(subdivisions);
+  return without_faces(sphere, [&](Index f) {
+    double least = 2;
+    for (Index v : sphere.triangles[f]) least = std::min(least, std::abs(sphere.vertices[v].z()));
+    return least < height;
+  });
+}
+
+/// A sphere with a hole in it and another one, closed or not, turned inside out within: a thick shell.
+inline TriangleMesh shell_with_hole(bool hole_within) {
+  const TriangleMesh outer = sphere_with_hole(2, 0.6);
+  const TriangleMesh inner = hole_within ? sphere_with_hole(2, 0.7) : icosphere(2);
+  return join(outer, flipped(scaled(inner, 0.5)));
+}
+
+struct NamedMesh {
+  std::string name;
+  TriangleMesh mesh;
+};
+
+/// Holes of all kinds: round, with islands, between pieces apart, ragged and touching themselves at vertices.
+inline std::vector<NamedMesh> holed_meshes() {
+  return {{"sphere", sphere_with_hole(2, 0.6)},
+          {"six holes", sphere_with_holes(6, 2, 0.4)},
+          {"island", sphere_with_island(3, 0.9, 0.4)},
+          {"cylinder", open_cylinder(9, 3)},
+          {"torus", torus_with_missing_parts()},
+          {"two caps", two_caps()},
+          {"touching holes", sphere_with_touching_holes()},
+          {"ragged", rough_sphere_with_ragged_holes(2, 4, 3)},
+          {"ragged and rough", rough_sphere_with_ragged_holes(3, 5, 5, 0.05)},
+          {"shell", shell_with_hole(false)},
+          {"shell open within", shell_with_hole(true)},
+          {"sheet", rough_sheet(6, 5, 0.3, 1, 2)},
+          {"two spheres apart",
+           join(sphere_with_hole(1, 0.7), translated(sphere_with_hole(2, 0.5), Vector3(1.2, 2, -1.3)))}};
+}
+
+// --- labellings
+// ---------------------------------------------------------------------------------------------------
+
+/// Every node inside with this probability.
+inline Labelling random_labelling(const VolumeComplex& complex, std::uint64_t seed, double share) {
+  std::mt19937_64 random(seed);
+  Labelling labelling;
+  for (std::size_t node = 0; node < complex.nodes; ++node)
+    labelling.inside.push_back(uniform(random) < share);
+  return labelling;
+}
+
+}  // namespace test
+}  // namespace meshcomplete
