@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/patch.h"
@@ -46,6 +47,12 @@ struct Scene {
     for (const Vector3& at : {Vector3(0.1, 0.05, 1.15), Vector3(-0.15, 0.1, 0.8), Vector3(0, -0.2, 1.1)})
       obstacles.push_back({at, at + Vector3(0.1, 0.02, 0.03), at + Vector3(0.02, 0.1, -0.04)});
   }
+
+  /// A patch by itself, and a mesh far away.
+  explicit Scene(PatchMesh open)
+      : mesh(test::translated(test::tetrahedron(), Vector3(100, 0, 0))),
+        input(mesh),
+        patch(std::move(open)) {}
 
   PatchMesh editable(const Patch& cap, bool steiner) const {
     std::map<Index, Index> number;
@@ -143,7 +150,7 @@ struct Step {
   bool onto_target = true;
 };
 
-Step random_step(const PatchMesh& patch, std::mt19937& random) {
+Step random_step(const PatchMesh& patch, std::mt19937& random, double wildness = 1) {
   const auto uniform = [&] { return random() * 0x1p-32; };
   Step step;
   step.kind = "mmsfcbb"[random() % 7];
@@ -154,7 +161,7 @@ Step random_step(const PatchMesh& patch, std::mt19937& random) {
            (step.kind == 'b' && !patch.is_boundary(step.at) && random() % 500 != 0));
   const Vector3& a = patch.position(patch.origin(step.at));
   const Vector3& b = patch.position(patch.target(step.at));
-  const double reach = (b - a).norm() * (random() % 4 == 0 ? 2.0 : 0.3);
+  const double reach = (b - a).norm() * wildness * (random() % 4 == 0 ? 2.0 : 0.3);
   const Vector3 offset = reach * Vector3(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
   step.onto_target = random() % 2 == 0;
   if (step.kind == 's') step.to = 0.5 * (a + b) + offset;
@@ -224,32 +231,98 @@ test::CutOut rough_cap(unsigned seed, double angle) {
   });
 }
 
-// Random steps, small and wild, on a patch with and without Steiner points: each is made just when a look at
-// all triangles finds nothing in the way, and one that is refused leaves everything as it was.
+/// Moves a vertex to just behind the middle of a triangle, or into it.
+Step step_at(const PatchMesh& patch, Index triangle, std::mt19937& random) {
+  Step step;
+  do {
+    step.at = static_cast<Index>(random() % patch.vertex_count());
+  } while (!patch.vertex_alive(step.at));
+  const Corners c = corners_of(patch, triangle);
+  const double share = random() * 0x1p-32, other = (1 - share) * random() * 0x1p-32;
+  const Vector3 aim = share * c[0] + other * c[1] + (1 - share - other) * c[2];
+  step.to = patch.position(step.at) + 1.1 * (aim - patch.position(step.at));
+  return step;
+}
+
+std::vector<Index> changed_triangles(const PatchMesh& before, const PatchMesh& after) {
+  std::vector<Index> changed;
+  for (Index t = 0; t < after.triangle_count(); ++t)
+    if (after.alive(t) &&
+        (t >= before.triangle_count() || !before.alive(t) || corners_of(before, t) != corners_of(after, t)))
+      changed.push_back(t);
+  return changed;
+}
+
+/// How many steps of each kind were made, refused by the guard, and impossible for a manifold.
+using Counts = std::map<char, std::array<int, 3>>;
+
+/// Each step is made just when a look at all triangles finds nothing in the way, and one that is refused
+/// leaves everything as it was.
+void expect_exact_answers(Scene& scene, std::mt19937& random, int steps, double wildness, Counts& counts) {
+  GuardedPatch guarded = scene.guard();
+  const std::map<Index, Index> rests = scene.resting();
+  std::vector<Index> changed;  // by the last step that was made: the next ones aim at them
+  for (int i = 0; i < steps; ++i) {
+    const Step step = changed.empty() || random() % 2 == 0
+                          ? random_step(scene.patch, random, wildness)
+                          : step_at(scene.patch, changed[random() % changed.size()], random);
+    const PatchMesh before = scene.patch;
+    PatchMesh edited = scene.patch;
+    const bool manifold = make(edited, step);
+    const bool allowed = manifold && scene.allows(edited, rests);
+    ASSERT_EQ(make(guarded, step), allowed) << "step " << i << " of kind " << step.kind;
+    ASSERT_NO_FATAL_FAILURE(expect_same(scene.patch, allowed ? edited : before));
+    ++counts[step.kind][allowed ? 0 : manifold ? 1 : 2];
+    if (allowed) changed = changed_triangles(before, scene.patch);
+  }
+}
+
 TEST(GuardedPatch, RefusesExactlyWhatWouldMeetSomething) {
-  std::map<char, std::array<int, 3>> counts;  // by kind: made, refused by the guard, not a manifold
+  Counts counts;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     Scene scene(rough_cap(seed, 0.45), seed % 2 == 0);
+    ASSERT_EQ(!scene.resting().empty(), seed % 2 == 0);
     std::mt19937 random(seed);
-    GuardedPatch guarded = scene.guard();
-    const std::map<Index, Index> rests = scene.resting();
-    ASSERT_EQ(!rests.empty(), seed % 2 == 0);
-    for (int i = 0; i < 400; ++i) {
-      const Step step = random_step(scene.patch, random);
-      const PatchMesh before = scene.patch;
-      PatchMesh edited = scene.patch;
-      const bool manifold = make(edited, step);
-      const bool allowed = manifold && scene.allows(edited, rests);
-      ASSERT_EQ(make(guarded, step), allowed) << "seed " << seed << " step " << i << " of kind " << step.kind;
-      ASSERT_NO_FATAL_FAILURE(expect_same(scene.patch, allowed ? edited : before));
-      ++counts[step.kind][allowed ? 0 : manifold ? 1 : 2];
-    }
+    ASSERT_NO_FATAL_FAILURE(expect_exact_answers(scene, random, 1000, 1, counts)) << "seed " << seed;
   }
   for (char kind : {'m', 's', 'f', 'c'}) {
     EXPECT_GT(counts[kind][0], 20) << kind;
     EXPECT_GT(counts[kind][1], 20) << kind;
   }
   EXPECT_GT(counts['b'][0], 20);
+}
+
+/// A bumpy sheet; every other boundary vertex is on the rim.
+PatchMesh open_sheet(unsigned seed) {
+  const TriangleMesh sheet = test::rough_sheet(5, 5, 0.3, 0, seed);
+  const std::vector<Index> outline = test::loops_of(sheet).at(0).vertices;
+  std::vector<Index> number(sheet.vertices.size(), GuardedPatch::none);
+  Index next = 0;
+  for (std::size_t i = 0; i < outline.size(); i += 2) number[outline[i]] = next++;
+  const Index rim = next;
+  for (Index& n : number)
+    if (n == GuardedPatch::none) n = next++;
+  std::vector<Vector3> positions(number.size());
+  for (std::size_t v = 0; v < number.size(); ++v) positions[number[v]] = sheet.vertices[v];
+  std::vector<Triangle> triangles = sheet.triangles;
+  for (Triangle& t : triangles)
+    for (Index& v : t) v = number[v];
+  return PatchMesh(positions, rim, triangles);
+}
+
+// Nothing is near but the patch itself, and steps lead far: what has been moved is in the way of what follows
+// where it is now, and not where it was.
+TEST(GuardedPatch, StepsAreInTheWayOfLaterOnes) {
+  Counts counts;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    Scene scene(open_sheet(seed));
+    std::mt19937 random(seed);
+    ASSERT_NO_FATAL_FAILURE(expect_exact_answers(scene, random, 1500, 4, counts)) << "seed " << seed;
+  }
+  for (char kind : {'m', 's', 'f', 'c', 'b'}) {
+    EXPECT_GT(counts[kind][0], 20) << kind;
+    EXPECT_GT(counts[kind][1], 10) << kind;
+  }
 }
 
 TEST(GuardedPatch, KeepsACleanPatchClean) {
