@@ -3,10 +3,12 @@
 
     scripts/render_completion.py MESH PREFIX [-f FILTER [-p NAME=VALUE ...] ...] [--from=X,Y,Z] [--up=X,Y,Z]
                                  [--at=X,Y,Z] [--width W] [--size W,H] [--edges] [--unfolded]
+                                 [--with LAYER]
 
 Writes PREFIX-before.png and PREFIX-after.png, and with --unfolded PREFIX-unfolded.png. Rims are drawn in red, the inner
 side of the surface dark, new faces orange. The camera looks at the point --at (default: the centre of the bounding box)
-from the direction --from; --width is what the picture shows across, as a share of the bounding box's diagonal.
+from the direction --from; --width is what the picture shows across, as a share of the bounding box's diagonal. --with
+opens another mesh first, as a layer that parameters can name.
 
 Needs the runner (build/bin/meshcomplete, or where the variable MESHCOMPLETE says), f3d, xvfb-run and ImageMagick.
 """
@@ -174,6 +176,7 @@ def arguments():
     parser.add_argument("--size", type=lambda text: [int(x) for x in text.split(",")], default=[640, 480])
     parser.add_argument("--edges", action="store_true")
     parser.add_argument("--unfolded", action="store_true")
+    parser.add_argument("--with", dest="layers", action="append", default=[], metavar="LAYER")
     return parser.parse_args()
 
 
@@ -186,9 +189,9 @@ def main():
         steps += ["-p", "UnfoldedLayer=true"]
     with tempfile.TemporaryDirectory() as folder:
         before, after, flat = (os.path.join(folder, name) for name in ("before.off", "after.off", "flat.off"))
-        quiet = [RUNNER, "--quiet", "-i", options.mesh]
-        subprocess.run(quiet + ["-o", before], check=True)
-        command = quiet + steps + ["-o", after, "-l", "0"]
+        subprocess.run([RUNNER, "--quiet", "-i", options.mesh, "-o", before], check=True)
+        command = [RUNNER, "--quiet", "-i", *options.layers, options.mesh] + steps
+        command += ["-o", after, "-l", str(len(options.layers))]
         if options.unfolded:
             command += ["-o", flat, "-l", "x"]
         if subprocess.run(command).returncode not in (0, 3):
