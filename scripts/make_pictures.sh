@@ -3,7 +3,7 @@
 #
 # Usage: scripts/make_pictures.sh [BUNNY.ply]
 #
-# The meshes come from Debian's package libcgal-demo, and one is made by a script. BUNNY.ply is the reconstruction of the
+# The meshes come from Debian's package libcgal-demo, and some are made by scripts. BUNNY.ply is the reconstruction of the
 # Stanford Bunny (35,947 vertices, five holes) from the Stanford 3D Scanning Repository; without it its pictures stay as
 # they are. Needs the runner: build/bin/meshcomplete, or where the variable MESHCOMPLETE says.
 set -euo pipefail
@@ -16,8 +16,12 @@ images=$top/docs/images
 mkdir -p "$images"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$top/scripts/fetch_demo.sh" elephant-with-holes.off mech-holes-shark.off
+"$top/scripts/fetch_demo.sh" elephant-with-holes.off mech-holes-shark.off armadillo.off
 "$top/scripts/make_spiral_hole.py" "$work/spiral.off"
+for shape in pierced-sphere outer-half-torus inside-the-ring island broken-ring; do
+  "$top/scripts/make_atomic_shapes.py" "$shape" "$work/$shape.off"
+done
+"$top/scripts/make_atomic_shapes.py" gap "$work/gap.off" "$cache/data/armadillo.off" y -28 -22
 
 picture() {
   say "Drawing $(basename "$2")"
@@ -28,4 +32,22 @@ picture "$cache/data/elephant-with-holes.off" "$images/elephant" --from=0.7,0.3,
 picture "$cache/data/mech-holes-shark.off" "$images/shark" --from=1,0.5,1 --width=1.1
 picture "$cache/data/mech-holes-shark.off" "$images/shark-close" --from=1,0.5,1 --width=0.3 --at=0.44,0.1,0.5 --edges
 picture "$work/spiral.off" "$images/spiral" --from=-0.3,0.9,1 --width=0.9 --unfolded
+
+# By atomic volumes: a shape, the picture's name, the view, and parameters.
+atomic() {
+  local shape=$1 name=$2
+  shift 2
+  picture "$work/$shape.off" "$images/atomic-$name" -f "Close Holes: Atomic Volumes" --size=480,360 "$@"
+}
+
+atomic pierced-sphere pierced --from=1,-0.6,0.7 --up=0,0,1 --width=1.1
+atomic gap gap --from=0.35,0.12,-1 --width=0.55 --at=0,-20,0
+atomic island island --from=1,-0.6,1.1 --up=0,0,1 --width=0.8
+atomic outer-half-torus torus --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
+atomic outer-half-torus ring --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
+  --with "$work/inside-the-ring.off" -p OutsideLayer=inside-the-ring.off
+atomic broken-ring broken --from=0.7,0.9,0.9 --up=0,0,1 --width=0.8
+atomic broken-ring symmetry --from=0.7,0.9,0.9 --up=0,0,1 --width=0.8 -p Symmetry="Detect reflection"
+rm "$images/atomic-ring-before.png" "$images/atomic-symmetry-before.png"
+
 [ $# -eq 0 ] || picture "$1" "$images/bunny" --from=0.1,-1,0.15 --up=0,0,1
