@@ -153,7 +153,7 @@ struct Step {
 Step random_step(const PatchMesh& patch, std::mt19937& random, double wildness = 1) {
   const auto uniform = [&] { return random() * 0x1p-32; };
   Step step;
-  step.kind = "mmsfcbb"[random() % 7];
+  step.kind = "mmssfcbb"[random() % 8];
   // Boundary edges are few: those steps look for one.
   do {
     step.at = static_cast<Index>(random() % (3 * patch.triangle_count()));

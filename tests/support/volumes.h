@@ -144,6 +144,24 @@ inline std::vector<NamedMesh> holed_meshes() {
            join(sphere_with_hole(1, 0.7), translated(sphere_with_hole(2, 0.5), Vector3(1.2, 2, -1.3)))}};
 }
 
+/// A mesh with holes, and the closed one that it is a part of: what is inside is known.
+struct PuncturedMesh {
+  std::string name;
+  TriangleMesh closed, mesh;
+};
+
+inline std::vector<PuncturedMesh> punctured_meshes() {
+  const TriangleMesh within = flipped(scaled(icosphere(2), 0.5));
+  const TriangleMesh rough = rough_sphere(3, 0.15, 4);
+  return {{"sphere", icosphere(2), sphere_with_hole(2, 0.6)},
+          {"six holes", icosphere(2), sphere_with_holes(6, 2, 0.4)},
+          {"torus", torus(24, 12), torus_with_missing_parts()},
+          {"two caps", icosphere(2), two_caps()},
+          {"shell", join(icosphere(2), within), shell_with_hole(false)},
+          {"shell open within", join(icosphere(2), within), shell_with_hole(true)},
+          {"rough", rough, without_ball(without_ball(rough, Vector3(0, 0, 1), 0.3), Vector3(1, 0, 0), 0.4)}};
+}
+
 // --- labellings
 // ---------------------------------------------------------------------------------------------------
 
