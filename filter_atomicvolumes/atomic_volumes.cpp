@@ -116,11 +116,13 @@ class Run {
 };
 
 VolumeSolution Run::solve(const Progress& progress) const {
+  const PreparedConstraints constraints(mesh_, topology_, neighbourhood_, options_.constraints,
+                                        progress.part(0, 0, ""));
   std::optional<VolumeSolution> best;
   for (int shift = 0; shift < options_.shifts; ++shift) {
     const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
     VolumeSolution one =
-        solve_volumes(mesh_, topology_, neighbourhood_, options_,
+        solve_volumes(mesh_, topology_, neighbourhood_, options_, constraints,
                       options_.seed + static_cast<std::uint64_t>(shift) * 0x9e3779b97f4a7c15ull,
                       progress.part(from, to, "dividing space"));
     if (!best || one.labelling.weight < best->labelling.weight) {
@@ -128,6 +130,7 @@ VolumeSolution Run::solve(const Progress& progress) const {
       best.emplace(std::move(one));
     }
   }
+  best->notes.insert(best->notes.begin(), constraints.notes().begin(), constraints.notes().end());
   return std::move(*best);
 }
 

@@ -23,7 +23,8 @@ constexpr double margin = 0.05;
 // meshes that are degenerate themselves.
 constexpr int most_restarts = 20;
 
-// Crossed cubes that disagree are split so often before the square between them is left to the patch.
+// Crossed cubes that disagree, and volumes with contradicting constraints, are split so often; then the
+// square between the cubes is left to the patch.
 constexpr int most_refinements = 8;
 
 // A uniform number from 0 to 1, the same on every platform.
@@ -85,34 +86,47 @@ void check_budget(const VolumeComplex& complex, const AtomicVolumesOptions& opti
                                      ". Raise NodeBudget, or close fewer or shorter holes at a time.");
 }
 
-void solve(VolumeSolution& solution, const AtomicVolumesOptions& options, const Progress& progress) {
+// Splits cubes until those that only the mesh divides agree with each other, and constraints are told apart;
+// then labels the volumes.
+void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
+           const PreparedConstraints& constraints, const Progress& progress) {
   DecompositionOptions division;
   division.max_depth = options.max_depth.value_or(Lattice::depth);
   division.cube_budget = options.node_budget;
-  solution.decomposition = decompose(solution.mesh, division, progress.part(0, 0.3, stage));
-  solution.complex = build_complex(solution.mesh, solution.decomposition, progress.part(0.3, 0.7, stage));
-  for (int i = 0; i < most_refinements && !solution.complex.disagreeing.empty(); ++i) {
-    if (!split_further(solution.decomposition, solution.mesh, division, solution.complex.disagreeing)) break;
-    solution.complex = build_complex(solution.mesh, solution.decomposition, progress.part(0.7, 0.7, stage));
+  Decomposition& octree = solution.decomposition;
+  octree = decompose(solution.mesh, division, progress.part(0, 0.3, stage));
+  if (!constraints.empty())
+    refine_for_constraints(octree, solution.mesh, division, constraints, {}, progress);
+  TiedConstraints tied;
+  for (int i = 0;; ++i) {
+    solution.complex = build_complex(solution.mesh, octree, progress.part(0.3, 0.7, stage));
+    check_budget(solution.complex, options);
+    if (!constraints.empty())
+      tied = tie_constraints(solution.mesh, octree, solution.complex, options.weight, constraints, progress);
+    if (i == most_refinements) break;
+    bool split = split_further(octree, solution.mesh, division, solution.complex.disagreeing);
+    if (!tied.split.empty())
+      split |= refine_for_constraints(octree, solution.mesh, division, constraints, tied.split, progress);
+    if (!split) break;
   }
-  check_budget(solution.complex, options);
-  solution.labelling = cut_complex(solution.mesh, solution.complex, options.weight, {},
+  solution.notes = tied.notes;
+  solution.labelling = cut_complex(solution.mesh, solution.complex, options.weight, tied.ties,
                                    progress.part(0.7, 0.9, "computing the minimum cut"));
-  solution.surface =
-      extract(solution.mesh, solution.decomposition.octree, solution.complex, solution.labelling);
+  solution.surface = extract(solution.mesh, octree.octree, solution.complex, solution.labelling);
 }
 
 }  // namespace
 
 VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topology,
                              const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
-                             std::uint64_t seed, const Progress& progress) {
+                             const PreparedConstraints& constraints, std::uint64_t seed,
+                             const Progress& progress) {
   std::mt19937_64 random(seed);
   for (int restart = 0; restart <= most_restarts; ++restart) {
     VolumeSolution solution{
         {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}};
     try {
-      solve(solution, options, progress);
+      solve(solution, options, constraints, progress);
     } catch (const Coincidence&) {
       continue;
     }

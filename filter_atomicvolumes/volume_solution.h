@@ -7,6 +7,7 @@
 
 #include "common/core/progress.h"
 #include "filter_atomicvolumes/atomic_volumes.h"
+#include "filter_atomicvolumes/constraints.h"
 #include "filter_atomicvolumes/decomposition.h"
 #include "filter_atomicvolumes/extraction.h"
 #include "filter_atomicvolumes/labelling.h"
@@ -30,6 +31,7 @@ struct VolumeSolution {
 /// Deterministic.
 VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topology,
                              const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
-                             std::uint64_t seed, const Progress& progress = Progress());
+                             const PreparedConstraints& constraints, std::uint64_t seed,
+                             const Progress& progress = Progress());
 
 }  // namespace meshcomplete

@@ -122,12 +122,13 @@ void guarded_remesh(GuardedPatch& guarded, std::vector<double>& target, const Gu
                     const Progress& progress) {
   GuardedRemesher remesher(guarded, target, options);
   for (int round = 0; round < options.rounds; ++round) {
-    remesher.smooth();
-    progress.check();
+    // Collapses first: every step after them has fewer triangles to guard.
     remesher.collapse_short_edges();
-    remesher.split_long_edges();
     progress.check();
+    remesher.split_long_edges();
     remesher.flip_edges();
+    progress.check();
+    remesher.smooth();
     progress.update((round + 1.0) / options.rounds);
   }
 }
