@@ -7,7 +7,7 @@
 
 pierced-sphere   a sphere with an opening at either pole, and an open pipe through both (the paper's figure 1)
 outer-half-torus a fat torus without the half that is nearer to its axis (figure 2)
-inside-the-ring  points that fill the middle of that torus: a layer for OutsideLayer
+inside-the-ring  points in the middle of that torus: a layer for OutsideLayer
 island           a sphere without a ring round its pole: the cap is left, and touches nothing
 broken-ring      a torus without a third of its turn
 """
@@ -66,8 +66,7 @@ def outer_half_torus():
 
 
 def inside_the_ring():
-    steps = range(-8, 9)
-    return [(0.1 * i, 0.1 * j, 0.25 * k) for i in steps for j in steps for k in (-1, 0, 1) if i * i + j * j <= 36], []
+    return [(0.0, 0.0, -0.4), (0.0, 0.0, 0.0), (0.0, 0.0, 0.4)], []
 
 
 def island():

@@ -18,7 +18,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$top/scripts/fetch_demo.sh" elephant-with-holes.off mech-holes-shark.off armadillo.off
 "$top/scripts/make_spiral_hole.py" "$work/spiral.off"
-for shape in pierced-sphere outer-half-torus inside-the-ring island broken-ring; do
+for shape in pierced-sphere outer-half-torus inside-the-ring island; do
   "$top/scripts/make_atomic_shapes.py" "$shape" "$work/$shape.off"
 done
 "$top/scripts/make_atomic_shapes.py" gap "$work/gap.off" "$cache/data/armadillo.off" y -28 -22
@@ -46,8 +46,6 @@ atomic island island --from=1,-0.6,1.1 --up=0,0,1 --width=0.8
 atomic outer-half-torus torus --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
 atomic outer-half-torus ring --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
   --with "$work/inside-the-ring.off" -p OutsideLayer=inside-the-ring.off
-atomic broken-ring broken --from=0.7,0.9,0.9 --up=0,0,1 --width=0.8
-atomic broken-ring symmetry --from=0.7,0.9,0.9 --up=0,0,1 --width=0.8 -p Symmetry="Detect reflection"
-rm "$images/atomic-ring-before.png" "$images/atomic-symmetry-before.png"
+rm "$images/atomic-ring-before.png"
 
 [ $# -eq 0 ] || picture "$1" "$images/bunny" --from=0.1,-1,0.15 --up=0,0,1
