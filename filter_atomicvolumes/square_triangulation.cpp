@@ -89,6 +89,7 @@ class SquareTriangulator {
   void remember(const VertexKey& key, const Number& u, const Number& v, Index rim_edge);
   int compare(const Through& through, int axis, std::int64_t bound) const;
   bool in_square(const Through& through) const;
+  Index first_half_edge(Index half_edge) const;
   Index crossing_inside(const Through& through);
   std::optional<Index> crossing_at_side(Index triangle, const LatticeTriangle& corners, const Through& up,
                                         const Through& down, bool entering);
@@ -163,10 +164,20 @@ bool SquareTriangulator::in_square(const Through& through) const {
   return true;
 }
 
+// The lowest half-edge at the same edge, by which all its faces know it.
+Index SquareTriangulator::first_half_edge(Index half_edge) const {
+  const Index opposite = mesh_.topology.opposite[half_edge];
+  if (opposite == MeshTopology::boundary) return half_edge;
+  if (opposite != MeshTopology::non_manifold) return std::min(opposite, half_edge);
+  const auto ends = std::minmax<Index>({mesh_.origin(half_edge), mesh_.target(half_edge)});
+  for (Index h : mesh_.topology.non_manifold_half_edges)
+    if (std::minmax<Index>({mesh_.origin(h), mesh_.target(h)}) == ends) return h;
+  return half_edge;
+}
+
 Index SquareTriangulator::crossing_inside(const Through& through) {
   const Index opposite = mesh_.topology.opposite[through.half_edge];
-  const bool paired = opposite < MeshTopology::non_manifold;
-  const Index edge = paired ? std::min(opposite, through.half_edge) : through.half_edge;
+  const Index edge = first_half_edge(through.half_edge);
   const VertexKey key = VertexKey::crossing(edge, k_, square_.low[k_]);
   if (const Index known = point_at(key); known != none) return known;
   const LatticePoint &a = through.from, &b = through.to;
@@ -265,7 +276,8 @@ void SquareTriangulator::constrained_triangles() {
   for (Index i = 0; i < exact_.size(); ++i) {
     handles.push_back(triangulation.insert(exact_[i]));
     handles.back()->info() = i;
-    if (triangulation.number_of_vertices() != i + 1) throw Coincidence();
+    // Another position of the octree would not help where faces lie on each other.
+    if (triangulation.number_of_vertices() != i + 1) throw TangledCube();
   }
   try {
     for (const SquareTriangulation::Segment& s : result_.segments)
