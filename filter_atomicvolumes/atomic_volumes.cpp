@@ -47,6 +47,9 @@ void check_options(const AtomicVolumesOptions& o) {
           "SymmetryPrice must be positive.");
 }
 
+// Rounds in which patches that meet others are left as the faces of the volumes.
+constexpr int most_separations = 3;
+
 // Wall seconds between the ends of stages.
 class StageClock {
  public:
@@ -67,8 +70,8 @@ struct Piece {
   Sheet sheet;
   std::vector<std::size_t> loops;  // ascending
   bool wanted = false;
+  std::optional<RimPatch> rough;  // faces of the volumes, joined to the mesh
   Patch patch;
-  std::vector<BoundaryLoop> rims;  // as the patch walks them
   std::string route, defect;
 };
 
@@ -103,7 +106,11 @@ class Run {
   bool companion(std::size_t loop) const;
   std::vector<std::vector<std::size_t>> groups() const;
   void decide(const std::vector<std::size_t>& pieces, std::map<std::size_t, std::string>& reasons);
-  void finish_piece(Piece& piece, const std::vector<Corners>& obstacles, const Progress& progress) const;
+  FinishingOptions finishing() const { return {options_.remesh, options_.fairing, options_.edge_length}; }
+  void prepare_piece(Piece& piece, const Progress& progress) const;
+  void finish_piece(Piece& piece, const FinishingOptions& finishing, const std::vector<Corners>& obstacles,
+                    const Progress& progress) const;
+  std::vector<std::size_t> pieces_in_conflict(bool later_only) const;
   std::vector<Corners> obstacles_of(std::size_t piece) const;
 
   const TriangleMesh& mesh_;
@@ -224,17 +231,23 @@ void Run::decide(const std::vector<std::size_t>& group, std::map<std::size_t, st
     for (std::size_t loop : loops) reasons[loop] = reason;
 }
 
-void Run::finish_piece(Piece& piece, const std::vector<Corners>& obstacles, const Progress& progress) const {
+// Makes the patch of volume faces, joined to the mesh.
+void Run::prepare_piece(Piece& piece, const Progress& progress) const {
   RimPatch rough = make_rim_patch(mesh_, topology_, piece.sheet);
-  remove_steiner_points(rough, neighbourhood_, obstacles, progress);
-  piece.rims = rough.loops;
-  if (rough.steiner_points > 0) {
+  remove_steiner_points(rough, neighbourhood_, {}, progress);
+  if (rough.steiner_points > 0)
     piece.defect = "the patch could not be joined to " + std::to_string(rough.steiner_points) +
                    (rough.steiner_points == 1 ? " edge of the rim" : " edges of the rim");
-    return;
-  }
+  else
+    piece.rough.emplace(std::move(rough));
+}
+
+void Run::finish_piece(Piece& piece, const FinishingOptions& finishing, const std::vector<Corners>& obstacles,
+                       const Progress& progress) const {
+  if (!piece.rough) return;
+  const RimPatch& rough = *piece.rough;
   std::vector<const BoundaryLoop*> rim;
-  for (const BoundaryLoop& loop : piece.rims) rim.push_back(&loop);
+  for (const BoundaryLoop& loop : rough.loops) rim.push_back(&loop);
   const auto find = [&](const PatchMesh& now) {
     PatchFault fault;
     const Patch patch = as_patch(now, rough.rim_vertices, mesh_);
@@ -253,12 +266,11 @@ void Run::finish_piece(Piece& piece, const std::vector<Corners>& obstacles, cons
     }
     return fault;
   };
-  const FinishingOptions finishing{options_.remesh, options_.fairing, options_.edge_length};
   const FinishedPatch finished =
       finish(rough.mesh, finishing, {rough.rim, neighbourhood_, obstacles, find}, progress);
   piece.route = finished.route;
   piece.defect = finished.defect;
-  if (piece.defect.empty()) piece.patch = as_patch(finished.mesh, rough.rim_vertices, mesh_);
+  piece.patch = piece.defect.empty() ? as_patch(finished.mesh, rough.rim_vertices, mesh_) : Patch();
 }
 
 void Run::finish_pieces(const Progress& progress) {
@@ -271,7 +283,8 @@ void Run::finish_pieces(const Progress& progress) {
   tbb::parallel_for(std::size_t(0), pieces_.size(), [&](std::size_t i) {
     if (!pieces_[i].wanted) return;
     try {
-      finish_piece(pieces_[i], {}, within);
+      prepare_piece(pieces_[i], within);
+      finish_piece(pieces_[i], finishing(), {}, within);
       progress.advance(static_cast<double>(pieces_[i].sheet.triangles.size()) / total);
     } catch (...) {
       const std::lock_guard<std::mutex> lock(mutex);
@@ -302,24 +315,42 @@ std::vector<Corners> Run::obstacles_of(std::size_t piece) const {
   return triangles;
 }
 
-// Patches that were finished each for itself may meet: the later one is finished again with the others in its
-// way.
-void Run::separate(const Progress& progress) {
+// The pieces whose patches meet another's, ascending; of two that meet only the later one if asked.
+std::vector<std::size_t> Run::pieces_in_conflict(bool later_only) const {
   std::vector<Corners> triangles;
-  std::vector<std::size_t> owner;
+  std::vector<std::size_t> owner, found;
   for (std::size_t i = 0; i < pieces_.size(); ++i)
     for (const Triangle& t : pieces_[i].patch.triangles) {
       triangles.push_back(corners(mesh_, pieces_[i].patch, t));
       owner.push_back(i);
     }
-  std::vector<std::size_t> again;
-  for (const auto& [a, b] : improper_pairs(triangles))
-    if (owner[a] != owner[b]) again.push_back(std::max(owner[a], owner[b]));
-  std::sort(again.begin(), again.end());
-  again.erase(std::unique(again.begin(), again.end()), again.end());
-  for (std::size_t i : again) {
+  for (const auto& [a, b] : improper_pairs(triangles)) {
+    if (owner[a] == owner[b]) continue;
+    found.push_back(std::max(owner[a], owner[b]));
+    if (!later_only) found.push_back(std::min(owner[a], owner[b]));
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+// Patches that were finished each for itself may meet. The later one is finished again with the others in its
+// way; where that is no help both stay as the faces of the volumes, which meet nothing; and should others
+// meet these, they too.
+void Run::separate(const Progress& progress) {
+  std::vector<std::size_t> rough;
+  for (std::size_t i : pieces_in_conflict(true)) {
+    finish_piece(pieces_[i], finishing(), obstacles_of(i), progress);
+    if (!pieces_[i].defect.empty()) rough.push_back(i);
+  }
+  const FinishingOptions none{false, std::nullopt, std::nullopt};
+  for (int round = 0; round < most_separations && !rough.empty(); ++round) {
+    for (std::size_t i : rough) finish_piece(pieces_[i], none, {}, progress);
+    rough = pieces_in_conflict(false);
+  }
+  for (std::size_t i : pieces_in_conflict(true)) {
     pieces_[i].patch = Patch();
-    finish_piece(pieces_[i], obstacles_of(i), progress);
+    pieces_[i].defect = "the patch meets the patch of another hole";
   }
   progress.update(1);
 }
