@@ -18,9 +18,6 @@ namespace {
 // through between two triangles, also when they come from a thousand mesh sizes away.
 constexpr double beside_share = 1e-6;
 
-// How fast a line narrows towards its end: the tangent of 7 degrees.
-constexpr double narrowing = 0.125;
-
 // The part of the mean chord for which a line must pass through a volume.
 constexpr double least_chord = 0.5;
 
@@ -111,15 +108,14 @@ class Carver {
     first_cell_ = first_of_cubes(complex->convex_cells);
   }
 
-  void carve(const LineOfSight& line) const { walk(line, Path(line.from, line.to), 0); }
+  void carve(const LineOfSight& line) const { walk(Path(line.from, line.to), 0); }
 
  private:
-  void walk(const LineOfSight& line, const Path& path, Index cube) const;
-  void carve_tetrahedron(const LineOfSight& line, const Path& path, std::size_t number) const;
-  void carve_cell(const LineOfSight& line, const Path& path, const VolumeComplex::ConvexCell& cell) const;
+  void walk(const Path& path, Index cube) const;
+  void carve_tetrahedron(const Path& path, std::size_t number) const;
+  void carve_cell(const Path& path, const VolumeComplex::ConvexCell& cell) const;
   void mark(Cell node) const { seen_[static_cast<std::size_t>(node)].store(1, std::memory_order_relaxed); }
-  static bool sees_through(const LineOfSight& line, const Path& path, const Interval& inside,
-                           double mean_chord, const Vector3& middle);
+  static bool sees_through(const Path& path, const Interval& inside, double mean_chord);
   // Where the parts of each cube begin, in a list that goes cube by cube.
   template <class Parts>
   std::vector<std::size_t> first_of_cubes(const Parts& parts) const {
@@ -136,18 +132,12 @@ class Carver {
   std::vector<std::size_t> first_tetrahedron_, first_cell_;  // of each cube
 };
 
-bool Carver::sees_through(const LineOfSight& line, const Path& path, const Interval& inside,
-                          double mean_chord, const Vector3& middle) {
-  if (!inside.empty()) {
-    if (inside.leave >= path.length) return false;  // the line ends in it
-    if (inside.leave - inside.enter >= least_chord * mean_chord) return true;
-  }
-  const double at = (middle - path.from).dot(path.direction);
-  return at > 0 && at < path.length &&
-         (middle - path.from - at * path.direction).norm() <= line.half_width(at);
+bool Carver::sees_through(const Path& path, const Interval& inside, double mean_chord) {
+  if (inside.empty() || inside.leave >= path.length) return false;  // missed, or the line ends in it
+  return inside.leave - inside.enter >= least_chord * mean_chord;
 }
 
-void Carver::carve_tetrahedron(const LineOfSight& line, const Path& path, std::size_t number) const {
+void Carver::carve_tetrahedron(const Path& path, std::size_t number) const {
   const std::array<Vector3, 4> p = corners_of(*complex_, complex_->free_tetrahedra[number]);
   // Seen from outside counter-clockwise.
   constexpr int sides[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
@@ -160,12 +150,11 @@ void Carver::carve_tetrahedron(const LineOfSight& line, const Path& path, std::s
   }
   const double volume = std::abs((p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0])) / 6;
   if (!(volume > 0)) return;
-  if (sees_through(line, path, inside, 4 * volume / surface, (p[0] + p[1] + p[2] + p[3]) / 4))
+  if (sees_through(path, inside, 4 * volume / surface))
     mark(static_cast<Cell>(complex_->blank_nodes + number));
 }
 
-void Carver::carve_cell(const LineOfSight& line, const Path& path,
-                        const VolumeComplex::ConvexCell& cell) const {
+void Carver::carve_cell(const Path& path, const VolumeComplex::ConvexCell& cell) const {
   if (cell.cell < 0) return;
   Interval inside{0, path.length};
   double radius = std::numeric_limits<double>::infinity();  // of the ball round the centre
@@ -174,28 +163,28 @@ void Carver::carve_cell(const LineOfSight& line, const Path& path,
     radius = std::min(radius, side.normal.dot(cell.centre) + side.offset);
   }
   // The mean chord of a ball is 4/3 of its radius.
-  if (sees_through(line, path, inside, 4 * std::max(radius, 0.0) / 3, cell.centre)) mark(cell.cell);
+  if (sees_through(path, inside, 4 * std::max(radius, 0.0) / 3)) mark(cell.cell);
 }
 
-void Carver::walk(const LineOfSight& line, const Path& path, Index cube) const {
+void Carver::walk(const Path& path, Index cube) const {
   const Octree& octree = decomposition_.octree;
   const LatticeBox box = octree.box(cube);
   const Vector3 low = lattice_.position(box.low), high = lattice_.position(box.high);
-  const Vector3 wide = Vector3::Constant(line.widest);
-  if (path.through(low - wide, high + wide).empty()) return;
+  const Interval inside = path.through(low, high);
+  if (inside.empty()) return;
   if (!octree.is_leaf(cube)) {
-    for (Index place = 0; place < 8; ++place) walk(line, path, octree[cube].children + place);
+    for (Index place = 0; place < 8; ++place) walk(path, octree[cube].children + place);
     return;
   }
   if (decomposition_.volumes[cube].kind == VolumeKind::blank) {
     const double side = high[0] - low[0];
-    if (sees_through(line, path, path.through(low, high), 2 * side / 3, 0.5 * (low + high)))
+    if (sees_through(path, inside, 2 * side / 3))
       mark(complex_ ? complex_->cube_cells[cube] : static_cast<Cell>(cube));
   } else if (complex_) {
     for (std::size_t t = first_tetrahedron_[cube]; t < first_tetrahedron_[cube + 1]; ++t)
-      carve_tetrahedron(line, path, t);
+      carve_tetrahedron(path, t);
     for (std::size_t c = first_cell_[cube]; c < first_cell_[cube + 1]; ++c)
-      carve_cell(line, path, complex_->convex_cells[c]);
+      carve_cell(path, complex_->convex_cells[c]);
   }
 }
 
@@ -224,17 +213,11 @@ Fate cut_line(const TriangleBlocks& blocks, double spacing, LineOfSight& line) {
   const double end = (hit ? hit->share : 1.0) * length - spacing;
   if (!(end > 0)) return Fate::empty;
   const bool cut = hit && end < length - 2 * spacing;
-  line.widest = 0.5 * spacing;
-  line.widening = line.widest / length;
   line.to = line.from + (line.to - line.from) * (end / length);
   return cut ? Fate::cut : Fate::whole;
 }
 
 }  // namespace
-
-double LineOfSight::half_width(double distance) const {
-  return std::min(widening * distance, narrowing * ((to - from).norm() - distance));
-}
 
 LinesOfSight lines_of_sight(const TriangleBlocks& blocks, const std::vector<VolumeConstraints::View>& views,
                             double spacing, const Progress& progress) {

@@ -11,17 +11,9 @@
 
 namespace meshcomplete {
 
-/// The part of a line of sight that is known to be empty. It is as wide as the distance between samples:
-/// lines to neighbouring points touch each other, so that where volumes are finer than the samples no thin
-/// walls remain between lines.
+/// The part of a line of sight that is known to be empty.
 struct LineOfSight {
   Vector3 from = Vector3::Zero(), to = Vector3::Zero();
-  double widening = 0;  ///< half its width gained along each unit of length from `from`
-  double widest = 0;    ///< mesh units
-
-  /// Half the width at this distance from `from`. It narrows towards the end, so that it does not dip under a
-  /// surface that it ends on unless that is seen at less than 7 degrees.
-  double half_width(double distance) const;
 };
 
 struct LinesOfSight {
@@ -37,10 +29,10 @@ struct LinesOfSight {
 LinesOfSight lines_of_sight(const TriangleBlocks& blocks, const std::vector<VolumeConstraints::View>& views,
                             double spacing, const Progress& progress = Progress());
 
-/// Per cube of the octree, whether it is a blank leaf that is seen through. A volume is when its middle lies
-/// in a line, or the line passes through it for at least half the mean length of chords (4 volumes over
-/// surface): what is only grazed is not, nor what a line ends in. Cost: O(leaves passed * depth) a line;
-/// threaded.
+/// Per cube of the octree, whether it is a blank leaf that is seen through: a line passes through it for at
+/// least half the mean length of chords (4 volumes over surface). What is only grazed is not, nor what a line
+/// ends in. Lines have no width: giving them that of the samples changed no result, since cubes away from the
+/// rims are larger than that. Cost: O(leaves passed * depth) a line; threaded.
 std::vector<char> leaves_seen_through(const Lattice& lattice, const Decomposition& decomposition,
                                       const std::vector<LineOfSight>& lines,
                                       const Progress& progress = Progress());

@@ -366,6 +366,40 @@ TEST(SymmetryHints, AnImpreciseSymmetryLaysNoSecondSkin) {
   }
 }
 
+/// What the images of a point suggest.
+double suggested(const TriangleMesh& mesh, const Symmetry& symmetry, const Vector3& point) {
+  const MeshTopology topology = build_topology(mesh);
+  const SideFinder sides(mesh, topology);
+  const SymmetryHints hints(sides, {symmetry}, Vector3::Zero(), 6, 0.03);
+  SymmetryHints::Starts starts;
+  return hints.suggest(0, point, starts).inside;
+}
+
+TEST(SymmetryHints, ImagesFarFromTheMeshTellNothing) {
+  const TriangleMesh mesh = sphere_with_hole();
+  const Vector3 beyond_the_rim(0.4, 0, 0.92);
+  EXPECT_EQ(suggested(mesh, translation({0, 0, 1.2}), beyond_the_rim), 0);
+  EXPECT_EQ(suggested(mesh, reflection(Vector3::Zero(), {0, 0, 1}), beyond_the_rim), -1);
+  EXPECT_EQ(suggested(mesh, reflection(Vector3::Zero(), {0, 0, 1}), {0.3, 0, 0.92}), 1);
+  EXPECT_EQ(suggested(mesh, reflection(Vector3::Zero(), {0, 0, 1}), {0.1, 0, -0.9}), 0);
+}
+
+// Of three balls round an axis one is missing, one has a hole at the image in question, and one too; a post
+// beside the axis is nearer to that image than to the point, but not as near as the hole's rim.
+TEST(SymmetryHints, AnImageNearABoundaryKeepsOthersFromTelling) {
+  const Vector3 up(0, 0, 1);
+  const Symmetry turn = rotation(Vector3::Zero(), up, 3);
+  const Vector3 point = {2, 0, 0.93};
+  const Vector3 place = turn.motion * Vector3(2, 0, 0);
+  TriangleMesh ball = icosphere(3, 1, place);
+  ball = without_ball(ball, turn.motion * point, 0.35);
+  const Vector3 post = 0.4 * (turn.motion.inverse() * point) + Vector3(0, 0, 0.5);
+  const TriangleMesh mesh = join(ball, icosphere(2, 0.25, post));
+  EXPECT_EQ(suggested(mesh, turn, point), 0);
+  const TriangleMesh whole = join(icosphere(3, 1, place), icosphere(2, 0.25, post));
+  EXPECT_EQ(suggested(whole, turn, point), 1);
+}
+
 TEST(SymmetryHints, ImagesGoRoundTheWholeTurn) {
   const Vector3 middle(0.1, 0, 0);
   const auto count = [&](const Symmetry& symmetry) { return images_under(symmetry, middle, 2).size(); };
