@@ -323,7 +323,7 @@ void ComplexBuilder::label_crossed_cube(Index cube) {
     if (data.triangulation.segments.empty()) {
       const bool both = has_kind(s.below, VolumeKind::crossed) && has_kind(s.above, VolumeKind::crossed);
       if (both && is_crossed(square)) {
-        data.cells[0] = {unknown_cell, unknown_cell};
+        cell(square, 0, cube) = unknown_cell;  // the cube beyond sets its own side, perhaps in another thread
       } else {
         uncrossed.push_back(square);
       }
