@@ -18,7 +18,8 @@ import mesh_files
 from meshlab import BUILD, STAGED
 
 PICTURES = BUILD / "gui-test"
-FILTER = "Close Holes: Curve Unfolding"
+CURVE_UNFOLDING = "Close Holes: Curve Unfolding"
+ATOMIC_VOLUMES = "Close Holes: Atomic Volumes"
 
 
 class Screen:
@@ -119,14 +120,14 @@ class Window(unittest.TestCase):
         return self.wait_for("the main window", lambda: next(
             (number for title, number in self.screen.windows().items() if title.startswith("MeshLab 2020")), None))
 
-    def open_dialog(self, main_window, pictures):
+    def open_dialog(self, main_window, pictures, name=CURVE_UNFOLDING):
         """Finds the filter as a user does: ctrl+f, its name, the first hit."""
         def search():
             self.screen.call("xdotool", "windowactivate", "--sync", main_window)
             self.screen.call("xdotool", "key", "ctrl+f")
             time.sleep(1)
             self.screen.call("xdotool", "key", "ctrl+a")
-            self.screen.call("xdotool", "type", "--delay", "30", FILTER)
+            self.screen.call("xdotool", "type", "--delay", "30", name)
             time.sleep(1.5)
             self.screen.picture(f"{pictures}-1-search")
             self.screen.call("xdotool", "key", "Down")
@@ -134,8 +135,8 @@ class Window(unittest.TestCase):
             self.screen.call("xdotool", "key", "Return")
             end = time.monotonic() + 10
             while time.monotonic() < end:
-                if FILTER in self.screen.windows():
-                    return self.screen.windows()[FILTER]
+                if name in self.screen.windows():
+                    return self.screen.windows()[name]
                 time.sleep(0.2)
             return None
         dialog = self.wait_for("the filter's dialog", search, seconds=40)
@@ -147,20 +148,26 @@ class Window(unittest.TestCase):
         width, height = self.screen.size(dialog)
         self.screen.call("xdotool", "mousemove", "--window", dialog, str(3 * width // 4), str(height - 22), "click", "1")
 
-    def test_holes_are_closed(self):
+    def close_holes(self, name, pictures):
         mesh = self.home / "band.ply"
         mesh_files.write_ply(mesh, *mesh_files.band())
         main_window = self.open(mesh)
-        before = reddish_pixels(self.screen.picture("close-0-opened"))
-        dialog = self.open_dialog(main_window, "close")
+        before = reddish_pixels(self.screen.picture(f"{pictures}-0-opened"))
+        dialog = self.open_dialog(main_window, pictures, name)
         self.apply(dialog)
-        self.wait_for("the filter", lambda: f"Applied filter {FILTER}" in self.log())
+        self.wait_for("the filter", lambda: f"Applied filter {name}" in self.log())
         self.assertIn("Closed 2 of 2 holes.", self.log())
         self.assertNotIn("Filter Failure", self.screen.windows())
         self.screen.call("xdotool", "windowclose", dialog)
         time.sleep(1)
-        after = reddish_pixels(self.screen.picture("close-3-applied"))
+        after = reddish_pixels(self.screen.picture(f"{pictures}-3-applied"))
         self.assertGreater(after, before + 2000, "the new faces are not shown as selected")
+
+    def test_curve_unfolding(self):
+        self.close_holes(CURVE_UNFOLDING, "curve-unfolding")
+
+    def test_atomic_volumes(self):
+        self.close_holes(ATOMIC_VOLUMES, "atomic-volumes")
 
     def test_a_failure_is_a_message(self):
         mesh = self.home / "cloud.ply"

@@ -23,6 +23,15 @@ FILTERS = {
         ("RichEnum", "Energy", "0"), ("RichEnum", "Weights", "0"), ("RichEnum", "Unfolding", "0"),
         ("RichInt", "Restarts", "100"), ("RichInt", "Seed", "1"), ("RichAbsPerc", "EdgeLength", "0"),
         ("RichBool", "UnfoldedLayer", "false")],
+    "Close Holes: Atomic Volumes": CLOSE_HOLES + [
+        ("RichInt", "MaxDepth", "0"), ("RichInt", "NodeBudget", "5000000"), ("RichEnum", "Weight", "0"),
+        ("RichInt", "Shifts", "3"), ("RichInt", "Seed", "1"), ("RichEnum", "InsideLayer", "0"),
+        ("RichEnum", "OutsideLayer", "0"), ("RichEnum", "HintInsideLayer", "0"), ("RichEnum", "HintOutsideLayer", "0"),
+        ("RichFloat", "HintPrice", "0.01"), ("RichBool", "CarveLayers", "false"), ("RichEnum", "Symmetry", "0"),
+        ("RichPoint3f", "SymmetryPoint", "0 0 0"), ("RichPoint3f", "SymmetryDirection", "1 0 0"),
+        ("RichInt", "SymmetryFold", "2"), ("RichFloat", "SymmetryPrice", "0.5"), ("RichEnum", "Smoothing", "1"),
+        ("RichInt", "SmoothingIterations", "20"), ("RichBool", "MovingCentres", "false"), ("RichBool", "Remesh", "true"),
+        ("RichEnum", "Fairing", "0"), ("RichAbsPerc", "EdgeLength", "0")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select Border": [],
@@ -43,7 +52,10 @@ def script_text(steps):
         lines.append(f" <filter name={quoteattr(name)}>")
         for kind, key, value in parameters:
             more = {"RichAbsPerc": ' min="0" max="1"', "RichEnum": ' enum_cardinality="1" enum_val0="x"'}.get(kind, "")
-            lines.append(f'  <Param type="{kind}" name="{key}" value={quoteattr(value)}{more}/>')
+            held = f"value={quoteattr(value)}"
+            if kind == "RichPoint3f":
+                held = 'x="{}" y="{}" z="{}"'.format(*value.split())
+            lines.append(f'  <Param type="{kind}" name="{key}" {held}{more}/>')
         lines.append(" </filter>")
     return "\n".join(lines + ["</FilterScript>", ""])
 
@@ -91,10 +103,12 @@ class MeshLabTest(unittest.TestCase):
         self.folder = Path(holder.name)
 
     def server(self, mesh, steps, attributes=(), output="out.ply"):
+        """Runs a script on a mesh, or on several, each a layer; the last one is the current layer."""
         out, log, script = self.folder / output, self.folder / "log.txt", self.folder / "script.mlx"
         for stale in (out, log):
             stale.unlink(missing_ok=True)
-        arguments = ["-l", str(log), "-i", str(mesh), "-o", str(out)]
+        meshes = mesh if isinstance(mesh, list) else [mesh]
+        arguments = ["-l", str(log), "-i", *map(str, meshes), "-o", str(out)]
         if attributes:
             arguments += ["-m", *attributes]
         if steps:

@@ -108,6 +108,51 @@ class CloseHoles(MeshLabTest):
         self.assertTrue(all(count == 1 for count in directed.values()), "new faces agree on their orientation")
 
 
+class AtomicVolumes(MeshLabTest):
+    def band(self):
+        path = self.folder / "band.ply"
+        mesh_files.write_ply(path, *mesh_files.band())
+        return path
+
+    def close(self, mesh, **values):
+        return self.server(mesh, [step("Close Holes: Atomic Volumes", **values)])
+
+    def test_closes_both_holes(self):
+        mesh = self.band()
+        before = self.untouched(mesh)
+        run = self.close(mesh)
+        after = self.assert_kept(before, run)
+        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+        self.assertIn("Closed 2 of 2 holes.", run.log)
+        self.assertRegex(run.log, r"Figures: leaves \d+, .*nodes \d+, .*depth \d+")
+
+    def test_layers_of_points(self):
+        """Layers are counted from 1; 0 is none. The last mesh is the current layer."""
+        points = self.folder / "points.ply"
+        mesh_files.write_ply(points, [(0.1, 0.0, 0.0)], [])
+        run = self.close([points, self.band()], InsideLayer=1)
+        self.assertTrue(run.saved, run)
+        self.assertTrue(mesh_files.is_closed_manifold(mesh_files.Ply(run.output).faces), run)
+        self.assert_refused(self.close([points, self.band()], InsideLayer=1, OutsideLayer=1), "is chosen twice")
+        self.assert_refused(self.close([points, self.band()], InsideLayer=2), "the layer that the filter works on")
+        self.assert_refused(self.close(self.band(), InsideLayer=7), "there is no layer 7")
+
+    def test_a_given_symmetry(self):
+        run = self.close(self.band(), Symmetry=4, SymmetryPoint="0 0 0", SymmetryDirection="0 0 1")
+        self.assertTrue(run.saved, run)
+        self.assertIn("Symmetry: reflection", run.log)
+
+    def test_parameters_out_of_range_are_refused(self):
+        mesh = self.band()
+        for values, message in (({"MaxDepth": 2}, 'Parameter "MaxDepth" must be 0, for any depth, or at least 3'),
+                                ({"NodeBudget": 10}, 'Parameter "NodeBudget" must'),
+                                ({"HintPrice": 0}, 'Parameter "HintPrice" must be greater than 0'),
+                                ({"Fairing": 4}, 'Parameter "Fairing": 4 is not one of its 4 choices'),
+                                ({"CarveLayers": "true"}, "no other visible layer has a camera")):
+            with self.subTest(**values):
+                self.assert_refused(self.close(mesh, **values), message)
+
+
 class CheckCompletion(MeshLabTest):
     def check(self, vertices, faces):
         path = self.folder / "checked.ply"
