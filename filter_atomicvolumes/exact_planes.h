@@ -3,16 +3,22 @@
 #pragma once
 
 #include <array>
-#include <boost/multiprecision/cpp_int.hpp>
+#include <cstdint>
 
 #include "common/core/lattice.h"
 
 namespace meshcomplete {
 
-/// Planes through lattice points have normals of 79 bits and offsets of 120, points where three of them meet
-/// coordinates of 281 bits over 240; the side of a plane needs 363 bits, the order of two points 523.
-using ExactInteger = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<
-    576, 576, boost::multiprecision::signed_magnitude, boost::multiprecision::unchecked, void>>;
+/// An integer as the arithmetic in the source file stores it: planes through lattice points have normals of
+/// 79 bits and offsets of 120, points where three of them meet coordinates of 281 bits over 240; the side of
+/// a plane needs 363 bits, the order of two points 523.
+struct ExactInteger {
+  static constexpr int limbs = 9;
+  std::array<std::uint64_t, limbs> magnitude{};  ///< the lowest limb first
+  bool negative = false;                         ///< never for 0
+
+  ExactInteger(std::int64_t value = 0);
+};
 
 /// normal . p + offset = 0; the positive side is that of the normal. Coordinates are relative to an origin
 /// that the planes and points of one complex share.

@@ -50,15 +50,13 @@ Number number(Wide value) {
 Number number(const ExactInteger& numerator, const ExactInteger& denominator) {
   using Exact = Kernel::Exact_kernel::FT;
   const auto exact = [](const ExactInteger& value) {
-    constexpr int bits = 48;
-    const Exact base(std::ldexp(1.0, bits));
-    const ExactInteger magnitude = abs(value);
+    // In halves of limbs, which doubles hold.
+    const Exact base(std::ldexp(1.0, 32));
     Exact sum(0);
-    for (int place = 576 / bits - 1; place >= 0; --place) {
-      const ExactInteger part = (magnitude >> (place * bits)) & ((std::int64_t{1} << bits) - 1);
-      sum = sum * base + Exact(part.convert_to<double>());
-    }
-    return value < 0 ? Exact(-sum) : sum;
+    for (int limb = ExactInteger::limbs - 1; limb >= 0; --limb)
+      for (int shift : {32, 0})
+        sum = sum * base + Exact(static_cast<double>(value.magnitude[limb] >> shift & 0xffffffffu));
+    return value.negative ? Exact(-sum) : sum;
   };
   return Number(Exact(exact(numerator) / exact(denominator)));
 }
@@ -303,9 +301,8 @@ void SquareTriangulator::place(CrossingTriangulation& triangulation, Index numbe
     std::array<Number, 2> at;
     for (int m = 0; m < 2; ++m) {
       const int axis = m == 0 ? i_ : j_;
-      at[m] = meshcomplete::number(
-          p.point->coordinates[axis] + (p.origin[axis] - square_.low[axis]) * p.point->weight,
-          p.point->weight);
+      at[m] = meshcomplete::number(p.point->coordinates[axis], p.point->weight) +
+              Number(static_cast<double>(p.origin[axis] - square_.low[axis]));
     }
     const Handle handle = triangulation.insert(Kernel::Point_2(at[0], at[1]));
     Index& place = handle->info().value;
