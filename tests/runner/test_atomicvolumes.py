@@ -1,6 +1,10 @@
 """Close Holes: Atomic Volumes, run the way users run it: gaps and islands, what other layers say, and messages."""
 
 import math
+import os
+import signal
+import subprocess
+import time
 import unittest
 
 from runner_case import Ply, RunnerCase, bits, sphere, write_ply
@@ -230,6 +234,22 @@ class Symmetries(Case):
             text = self.refused(1, f"Symmetry={choice}", "SymmetryDirection=0 0 0")
             self.assertRegex(text, "(?i)length|zero|direction|normal|axis")
         self.assertIn("2 to 1000", self.refused(2, "SymmetryFold=1"))
+
+
+class Cancelling(Case):
+    def test_ctrl_c_ends_it_soon_and_leaves_nothing(self):
+        vertices, faces = sphere(rings=120, segments=160, hole=False)
+        self.write("in.ply", vertices, without(vertices, faces, [(-0.3, 0.3)]))
+        for delay in (0.5, 1.5):
+            process = subprocess.Popen(self.command("-i", "in.ply", "-f", FILTER, "-p", "Shifts=100", "-o", "out.ply"),
+                                       cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(delay)
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            # A signal that comes before the program's first line ends it as it ends any program.
+            self.assertIn(process.wait(timeout=60), (130, -signal.SIGINT))
+            self.assertLess(time.monotonic() - start, 5)
+            self.assertFalse(os.path.exists(self.path("out.ply")))
 
 
 class Messages(Case):

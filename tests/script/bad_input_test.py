@@ -6,10 +6,12 @@ import unittest
 import mesh_files
 from meshlab import MeshLabTest, step
 
-CURVE_UNFOLDING = "Close Holes: Curve Unfolding"
-
-
 class BadInput(MeshLabTest):
+    filter = "Close Holes: Curve Unfolding"
+
+    def close(self, mesh, **values):
+        return super().close(mesh, name=self.filter, **values)
+
     def mesh(self, vertices, faces, name="bad.ply"):
         path = self.folder / name
         mesh_files.write_ply(path, vertices, faces)
@@ -112,6 +114,21 @@ class BadInput(MeshLabTest):
         quads = [faces[i][:3] + (faces[i + 1][2],) for i in range(0, len(faces), 2)]
         _, after, run = self.assert_only_added(self.mesh(vertices, quads))
         self.assertIn("Closed 2 of 2 holes.", run.log)
+
+
+class BadInputOfAtomicVolumes(BadInput):
+    filter = "Close Holes: Atomic Volumes"
+
+    def test_faces_without_area_at_the_rim(self):
+        """No cube is small enough to keep apart what lies on one another: the budget ends it."""
+        vertices, faces = mesh_files.band()
+        middle = tuple((a + b) / 2 for a, b in zip(vertices[0], vertices[1]))
+        path = self.mesh(vertices + [middle], faces + [(0, len(vertices), 1)])
+        run = self.close(path, NodeBudget=100000)
+        if run.saved:
+            self.assert_kept(self.untouched(path), run)
+        else:
+            self.assert_refused(run, "NodeBudget")
 
 
 if __name__ == "__main__":
