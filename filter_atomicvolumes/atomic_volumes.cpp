@@ -137,6 +137,7 @@ VolumeSolution Run::solve(const Progress& progress) const {
       best.emplace(std::move(one));
     }
   }
+  smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
   best->notes.insert(best->notes.begin(), constraints.notes().begin(), constraints.notes().end());
   return std::move(*best);
 }

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "filter_atomicvolumes/volume_locator.h"
+#include "filter_atomicvolumes/volume_smoothing.h"
 
 namespace meshcomplete {
 namespace {
@@ -109,10 +111,26 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
       split |= refine_for_constraints(octree, solution.mesh, division, constraints, tied.split, progress);
     if (!split) break;
   }
-  solution.notes = tied.notes;
-  solution.labelling = cut_complex(solution.mesh, solution.complex, options.weight, tied.ties,
+  solution.notes = std::move(tied.notes);
+  solution.ties = std::move(tied.ties);
+  solution.labelling = cut_complex(solution.mesh, solution.complex, options.weight, solution.ties,
                                    progress.part(0.7, 0.9, "computing the minimum cut"));
   solution.surface = extract(solution.mesh, octree.octree, solution.complex, solution.labelling);
+}
+
+// The user's points with the volumes that hold them.
+std::vector<VolumePoint> points_in_volumes(const VolumeSolution& solution,
+                                           const PreparedConstraints& constraints) {
+  std::vector<VolumePoint> points;
+  const VolumeConstraints& given = constraints.given();
+  if (given.inside.empty() && given.outside.empty()) return points;
+  const VolumeLocator locator(solution.mesh, solution.decomposition, solution.complex, constraints.sides());
+  for (const std::vector<Vector3>* list : {&given.inside, &given.outside})
+    for (const Vector3& point : *list) {
+      const VolumePlace place = locator.locate(point);
+      if (place.kind == VolumePlace::free) points.push_back({place.node, point});
+    }
+  return points;
 }
 
 }  // namespace
@@ -124,7 +142,7 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
   std::mt19937_64 random(seed);
   for (int restart = 0; restart <= most_restarts; ++restart) {
     VolumeSolution solution{
-        {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}};
+        {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}, {}};
     try {
       solve(solution, options, constraints, progress);
     } catch (const Coincidence&) {
@@ -139,6 +157,26 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
       stage,
       "Some of the mesh's vertices lie so close to each other's edges or faces that space cannot be "
       "divided between them. Apply 'Merge Close Vertices' or 'Remove Zero Area Faces' first.");
+}
+
+void smooth(VolumeSolution& solution, const AtomicVolumesOptions& options,
+            const PreparedConstraints& constraints, const Progress& progress) {
+  if (options.smoothing == VolumeSmoothing::none || options.smoothing_iterations == 0) return;
+  VolumeSmoothingOptions smoothing;
+  smoothing.iterations = options.smoothing_iterations;
+  smoothing.moving_centres = options.moving_centres;
+  smoothing.points = points_in_volumes(solution, constraints);
+  if (options.smoothing == VolumeSmoothing::two_pass) {
+    std::vector<NodeTie> ties = suggest_by_springs(solution.mesh, solution.decomposition, solution.complex,
+                                                   solution.surface, smoothing, progress.part(0, 0.3, ""));
+    ties.insert(ties.end(), solution.ties.begin(), solution.ties.end());
+    solution.labelling =
+        cut_complex(solution.mesh, solution.complex, options.weight, ties, progress.part(0.3, 0.5, ""));
+    solution.surface =
+        extract(solution.mesh, solution.decomposition.octree, solution.complex, solution.labelling);
+  }
+  smooth_constrained(solution.mesh, solution.decomposition, solution.complex, solution.surface, smoothing,
+                     progress.part(0.5, 1, "smoothing the patches"));
 }
 
 }  // namespace meshcomplete

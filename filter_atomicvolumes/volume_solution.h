@@ -21,6 +21,7 @@ struct VolumeSolution {
   Decomposition decomposition;
   VolumeComplex complex;
   Labelling labelling;
+  std::vector<NodeTie> ties;  ///< of constraints and hints
   LabelledSurface surface;
   AtomicVolumesFigures figures;
   std::vector<std::string> notes;
@@ -33,5 +34,11 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
                              const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
                              const PreparedConstraints& constraints, std::uint64_t seed,
                              const Progress& progress = Progress());
+
+/// Smooths the surface of a solution as the options say (paper, section 5); two passes cut anew in between.
+/// Points of the constraints stay in their volumes. Throws `Cancelled`. Cost: O(volumes at the patch) per
+/// iteration, and that of another cut.
+void smooth(VolumeSolution& solution, const AtomicVolumesOptions& options,
+            const PreparedConstraints& constraints, const Progress& progress = Progress());
 
 }  // namespace meshcomplete
