@@ -88,7 +88,7 @@ TEST(Sheets, AnyLabellingComesApartIntoManifolds) {
       const PlacedMesh placed(named.mesh, seed);
       const auto division = test::divide(placed);
       if (!division) continue;
-      for (double share : {0.0, 0.2, 0.5, 0.7, 1.0}) {
+      for (double share : {0.0, 0.2, 0.5, 0.7}) {
         const Labelling labelling = test::random_labelling(division->complex, seed, share);
         const auto sheets =
             split_into_sheets(placed.mesh, placed.topology, surface_of(placed, *division, labelling));

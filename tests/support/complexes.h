@@ -1,9 +1,10 @@
 // What a list of triangles is, by the definitions: no adjacency of the library's is used.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <map>
-#include <set>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -17,14 +18,19 @@ using Edge = std::pair<Index, Index>;
 /// The sum of the triangles' boundaries: how often each edge (smaller end first) is walked upwards more than
 /// downwards. Edges where that is 0 are left out; of a closed oriented surface nothing is left.
 inline std::map<Edge, int> boundary_of(const std::vector<Triangle>& triangles) {
-  std::map<Edge, int> sum;
+  std::vector<std::pair<Edge, int>> sides;
   for (const Triangle& t : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const Index a = t[k], b = t[(k + 1) % 3];
-      int& count = a < b ? sum[{a, b}] : sum[{b, a}];
-      count += a < b ? 1 : -1;
+      sides.emplace_back(Edge(std::min(a, b), std::max(a, b)), a < b ? 1 : -1);
     }
-  for (auto at = sum.begin(); at != sum.end();) at = at->second == 0 ? sum.erase(at) : std::next(at);
+  std::sort(sides.begin(), sides.end());
+  std::map<Edge, int> sum;
+  for (std::size_t i = 0, past = 0; i < sides.size(); i = past) {
+    int count = 0;
+    for (; past < sides.size() && sides[past].first == sides[i].first; ++past) count += sides[past].second;
+    if (count != 0) sum.emplace_hint(sum.end(), sides[i].first, count);
+  }
   return sum;
 }
 
@@ -36,51 +42,64 @@ struct Shape {
   std::size_t components = 0;  ///< joined by vertices
 };
 
+/// Sets that are joined one by one.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index(0)); }
+  Index root(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(Index a, Index b) { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<Index> parent_;
+};
+
 inline Shape shape_of(const std::vector<Triangle>& triangles) {
   Shape shape;
-  std::set<Edge> sides;
-  std::set<std::set<Index>> faces;
-  std::map<Index, std::map<Index, Index>> links;  // round each vertex from one neighbour to the next
-  for (const Triangle& t : triangles) {
-    const std::set<Index> corners(t.begin(), t.end());
-    shape.manifold &= corners.size() == 3 && faces.insert(corners).second;
-    for (std::size_t k = 0; k < 3; ++k) {
-      shape.manifold &= sides.emplace(t[k], t[(k + 1) % 3]).second;
-      shape.manifold &= links[t[k]].emplace(t[(k + 1) % 3], t[(k + 2) % 3]).second;
-    }
+  std::vector<std::pair<Edge, Index>> sides;  // by origin and target, with the corner at the origin
+  std::vector<Triangle> faces;
+  Index past_vertices = 0;
+  for (Index t = 0; t < triangles.size(); ++t) {
+    Triangle corners = triangles[t];
+    for (Index k = 0; k < 3; ++k) sides.emplace_back(Edge(corners[k], corners[(k + 1) % 3]), 3 * t + k);
+    std::sort(corners.begin(), corners.end());
+    shape.manifold &= corners[0] != corners[1] && corners[1] != corners[2];
+    past_vertices = std::max(past_vertices, corners[2] + 1);
+    faces.push_back(corners);
   }
+  std::sort(faces.begin(), faces.end());
+  shape.manifold &= std::adjacent_find(faces.begin(), faces.end()) == faces.end();
+  std::sort(sides.begin(), sides.end());
   std::size_t edges = 0;
-  for (const auto& [a, b] : sides) {
-    const bool paired = sides.count({b, a}) != 0;
+  Sets fans(3 * triangles.size()), pieces(past_vertices);
+  const auto next = [](Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const auto& [side, corner] = sides[i];
+    shape.manifold &= i == 0 || sides[i - 1].first != side;
+    pieces.join(side.first, side.second);
+    const auto twin =
+        std::lower_bound(sides.begin(), sides.end(), std::pair(Edge(side.second, side.first), Index(0)));
+    const bool paired = twin != sides.end() && twin->first == Edge(side.second, side.first);
     shape.boundary += !paired;
-    edges += !paired || a < b;
+    edges += !paired || side.first < side.second;
+    if (!paired) continue;
+    fans.join(corner, next(twin->second));
+    fans.join(next(corner), twin->second);
   }
-  std::map<Index, Index> parent;
-  const auto root = [&](Index v) {
-    while (parent.at(v) != v) v = parent[v] = parent.at(parent.at(v));
-    return v;
-  };
-  for (const auto& entry : links) parent[entry.first] = entry.first;
-  for (const auto& [a, b] : sides) parent[root(a)] = root(b);
-  for (const auto& entry : links) {
-    shape.components += root(entry.first) == entry.first;
-    const std::map<Index, Index>& link = entry.second;
-    // A path begins where nothing leads to, a cycle anywhere.
-    std::set<Index> ends;
-    for (const auto& [from, to] : link) ends.insert(to);
-    Index start = link.begin()->first;
-    for (const auto& [from, to] : link)
-      if (!ends.count(from)) start = from;
-    std::size_t length = 0;
-    for (auto step = link.find(start); step != link.end() && length <= link.size();) {
-      ++length;
-      if (step->second == start) break;
-      step = link.find(step->second);
+  std::vector<Index> fan_of(past_vertices, 0xffffffffu);
+  long vertices = 0;
+  for (Index corner = 0; corner < 3 * triangles.size(); ++corner) {
+    const Index v = triangles[corner / 3][corner % 3], fan = fans.root(corner);
+    if (fan_of[v] == 0xffffffffu) {
+      ++vertices;
+      shape.components += pieces.root(v) == v;
+      fan_of[v] = fan;
     }
-    shape.manifold &= length == link.size();
+    shape.manifold &= fan_of[v] == fan;
   }
-  shape.euler =
-      static_cast<long>(links.size()) - static_cast<long>(edges) + static_cast<long>(triangles.size());
+  shape.euler = vertices - static_cast<long>(edges) + static_cast<long>(triangles.size());
   return shape;
 }
 

@@ -1,0 +1,164 @@
+#include "filter_atomicvolumes/rim_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "filter_atomicvolumes/extraction.h"
+#include "filter_atomicvolumes/labelling.h"
+#include "tests/support/complexes.h"
+#include "tests/support/patches.h"
+#include "tests/support/volumes.h"
+
+namespace meshcomplete {
+namespace {
+
+using test::PlacedMesh;
+
+/// The sheets of the cut of least area, in a root of this seed.
+std::vector<Sheet> sheets_of(const PlacedMesh& placed) {
+  const auto division = test::divide(placed);
+  if (!division) return {};
+  const Labelling cut = cut_complex(placed.lattice_mesh, division->complex, CutWeight::area, {});
+  return split_into_sheets(
+      placed.mesh, placed.topology,
+      extract(placed.lattice_mesh, division->decomposition.octree, division->complex, cut));
+}
+
+std::vector<Index> steiner_points(const PatchMesh& mesh) {
+  std::vector<Index> points;
+  for (Index v = static_cast<Index>(mesh.rim_size()); v < mesh.vertex_count(); ++v)
+    if (mesh.vertex_alive(v) && mesh.at_boundary(v)) points.push_back(v);
+  return points;
+}
+
+TEST(RimPatch, KnowsTheRimsOfTheSheet) {
+  for (const test::NamedMesh& named : test::holed_meshes()) {
+    SCOPED_TRACE(named.name);
+    const PlacedMesh placed(named.mesh, 1);
+    const std::vector<Sheet> sheets = sheets_of(placed);
+    for (const Sheet& sheet : sheets) {
+      if (sheet.closes.empty()) continue;
+      const RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);
+      std::vector<Index> vertices, faces, closed;
+      for (const BoundaryLoop& loop : patch.loops) {
+        ASSERT_EQ(loop.faces.size(), loop.vertices.size());
+        vertices.insert(vertices.end(), loop.vertices.begin(), loop.vertices.end());
+        faces.insert(faces.end(), loop.faces.begin(), loop.faces.end());
+        for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+          // The face at the edge from one vertex to the next walks it the other way.
+          const Index from = loop.vertices[i], to = loop.vertices[(i + 1) % loop.vertices.size()];
+          Index found = VolumeVertex::none;
+          for (Index h = 3 * loop.faces[i]; h < 3 * loop.faces[i] + 3; ++h)
+            if (placed.lattice_mesh.origin(h) == to && placed.lattice_mesh.target(h) == from) found = h;
+          closed.push_back(found);
+        }
+      }
+      std::sort(closed.begin(), closed.end());
+      EXPECT_EQ(closed, sheet.closes) << "each boundary edge once";
+      EXPECT_EQ(patch.rim_vertices, vertices);
+      EXPECT_EQ(patch.rim_faces, faces);
+      ASSERT_EQ(patch.mesh.rim_size(), vertices.size());
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        EXPECT_EQ(patch.mesh.position(static_cast<Index>(i)), placed.mesh.vertices[vertices[i]]);
+        EXPECT_EQ(patch.rim.positions[i], placed.mesh.vertices[vertices[i]]);
+      }
+      EXPECT_EQ(patch.mesh.triangle_count(), sheet.triangles.size());
+      EXPECT_EQ(patch.volumes.size(), sheet.volumes.size());
+      std::size_t steiner = 0;
+      for (const SheetVertex& v : sheet.vertices) steiner += v.rim_edge != SheetVertex::none;
+      EXPECT_EQ(steiner_points(patch.mesh).size(), steiner);
+      EXPECT_GE(steiner, patch.rim_vertices.size()) << "at least one on each edge";
+    }
+  }
+}
+
+/// What is left of the holes when all sheets are rim patches without Steiner points: nothing.
+void expect_completed(const PlacedMesh& placed) {
+  TriangleMesh whole = placed.mesh;
+  std::vector<Index> closed;
+  for (const Sheet& sheet : sheets_of(placed)) {
+    if (sheet.closes.empty()) continue;
+    RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);
+    ASSERT_EQ(remove_steiner_points(patch, placed.neighbourhood, {}), 0u);
+    ASSERT_EQ(patch.steiner_points, 0u);
+    ASSERT_TRUE(steiner_points(patch.mesh).empty());
+    const Patch result = as_patch(patch.mesh, patch.rim_vertices, placed.mesh);
+    const PatchCheck check = check_patch(placed.neighbourhood, result, test::pointers(patch.loops));
+    ASSERT_TRUE(check.passed()) << describe(check.defect);
+    closed.insert(closed.end(), sheet.closes.begin(), sheet.closes.end());
+    const Index offset = static_cast<Index>(whole.vertices.size() - placed.mesh.vertices.size());
+    whole.vertices.insert(whole.vertices.end(), result.vertices.begin(), result.vertices.end());
+    for (Triangle t : result.triangles) {
+      for (Index& v : t)
+        if (v >= result.input_vertices) v += offset;
+      whole.triangles.push_back(t);
+    }
+  }
+  std::sort(closed.begin(), closed.end());
+  ASSERT_EQ(closed, placed.topology.boundary_half_edges);
+  EXPECT_TRUE(test::boundary_of(whole.triangles).empty());
+}
+
+// No octree must leave a Steiner point: a mesh that shares no edges with its patch is not watertight.
+TEST(RimPatch, NoSteinerPointIsLeftWhereverTheOctreeLies) {
+  const std::set<std::string> small = {"sphere", "cylinder", "touching holes", "sheet"};
+  for (const test::NamedMesh& named : test::holed_meshes())
+    for (unsigned seed = 1; seed <= (small.count(named.name) ? 20u : 3u); ++seed)
+      ASSERT_NO_FATAL_FAILURE(expect_completed(PlacedMesh(named.mesh, seed)))
+          << named.name << ", seed " << seed;
+}
+
+// Something in the way of the patch stays outside of its steps.
+TEST(RimPatch, ObstaclesAreNotMet) {
+  const PlacedMesh placed(test::sphere_with_hole(2, 0.6), 2);
+  for (const Sheet& sheet : sheets_of(placed)) {
+    RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);
+    const std::vector<Index> before = steiner_points(patch.mesh);
+    ASSERT_FALSE(before.empty());
+    // A needle beside every Steiner point: whatever sweeps over it is refused.
+    std::vector<std::array<Vector3, 3>> obstacles;
+    for (Index v : before) {
+      Vector3 middle = Vector3::Zero();
+      double count = 0;
+      patch.mesh.for_neighbours(v, [&](Index w) {
+        middle += patch.mesh.position(w);
+        ++count;
+      });
+      const Vector3 p = patch.mesh.position(v) + 1e-3 * (middle / count - patch.mesh.position(v));
+      obstacles.push_back({p, p + Vector3(0, 0, 1e-5), p + Vector3(1e-5, 0, 1e-5)});
+    }
+    EXPECT_GT(remove_steiner_points(patch, placed.neighbourhood, obstacles), 0u);
+    EXPECT_EQ(patch.steiner_points, steiner_points(patch.mesh).size());
+  }
+}
+
+// Positions are those that will be stored, numbers those of the checker; gaps are left out.
+TEST(RimPatch, BecomesAPatch) {
+  const PlacedMesh placed(test::sphere_with_hole(2, 0.6), 3);
+  const std::vector<Sheet> sheets = sheets_of(placed);
+  ASSERT_EQ(sheets.size(), 1u);
+  RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheets[0]);
+  ASSERT_EQ(remove_steiner_points(patch, placed.neighbourhood, {}), 0u);
+  const Patch result = as_patch(patch.mesh, patch.rim_vertices, placed.mesh);
+  EXPECT_EQ(result.input_vertices, placed.mesh.vertices.size());
+  std::size_t alive = 0, vertices = 0;
+  for (Index t = 0; t < patch.mesh.triangle_count(); ++t) alive += patch.mesh.alive(t);
+  for (Index v = static_cast<Index>(patch.mesh.rim_size()); v < patch.mesh.vertex_count(); ++v)
+    vertices += patch.mesh.vertex_alive(v);
+  EXPECT_LT(alive, patch.mesh.triangle_count()) << "some are gone";
+  EXPECT_EQ(result.triangles.size(), alive);
+  EXPECT_EQ(result.vertices.size(), vertices);
+  for (const Vector3& p : result.vertices) EXPECT_EQ(p, as_stored(p));
+  const std::set<Index> rim(patch.rim_vertices.begin(), patch.rim_vertices.end());
+  for (const Triangle& t : result.triangles)
+    for (Index v : t)
+      EXPECT_TRUE(v < result.input_vertices ? rim.count(v) != 0 : v - result.input_vertices < vertices);
+}
+
+}  // namespace
+}  // namespace meshcomplete
