@@ -19,6 +19,7 @@
 #include "common/core/patch_check.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_atomicvolumes/finishing.h"
+#include "filter_atomicvolumes/hole_targets.h"
 #include "filter_atomicvolumes/rim_patch.h"
 #include "filter_atomicvolumes/sheets.h"
 #include "filter_atomicvolumes/volume_solution.h"
@@ -30,21 +31,6 @@ using Corners = std::array<Vector3, 3>;
 
 void require(bool condition, const char* message) {
   if (!condition) throw CompletionError("reading the parameters", message);
-}
-
-void check_options(const AtomicVolumesOptions& o) {
-  require(!o.max_depth || (*o.max_depth >= 3 && *o.max_depth <= 30),
-          "MaxDepth must lie between 3 and 30, or be 0 for as deep as the mesh needs.");
-  require(o.node_budget >= 1000, "NodeBudget must be at least 1000.");
-  require(o.shifts >= 1 && o.shifts <= 100, "Shifts must lie between 1 and 100.");
-  require(o.smoothing_iterations >= 0 && o.smoothing_iterations <= 1000,
-          "SmoothingIterations must lie between 0 and 1000.");
-  require(!o.edge_length || (std::isfinite(*o.edge_length) && *o.edge_length > 0),
-          "The edge length must be positive, or 0 for that of the mesh round the hole.");
-  require(std::isfinite(o.constraints.hint_price) && o.constraints.hint_price > 0,
-          "HintPrice must be positive.");
-  require(std::isfinite(o.constraints.symmetry_price) && o.constraints.symmetry_price > 0,
-          "SymmetryPrice must be positive.");
 }
 
 // Rounds in which patches that meet others are left as the faces of the volumes.
@@ -86,13 +72,7 @@ class Run {
         neighbourhood_(mesh),
         report_(report) {}
 
-  bool anything_to_do() const {
-    return std::any_of(report_.holes.begin(), report_.holes.end(),
-                       [&](const HoleReport& h) { return targeted(h); });
-  }
-  /// Open sheets beside a surface whose holes are closed are islands, and their rims are closed too, together
-  /// with that of the hole round them if that takes less area.
-  void target_islands();
+  bool anything_to_do() const { return std::any_of(report_.holes.begin(), report_.holes.end(), is_targeted); }
   VolumeSolution solve(const Progress& progress) const;
   void take_pieces(const LabelledSurface& surface);
   void finish_pieces(const Progress& progress);
@@ -100,9 +80,6 @@ class Run {
   AtomicVolumesResult result(CompletionReport report);
 
  private:
-  static bool targeted(const HoleReport& hole) {
-    return hole.outcome == HoleOutcome::failed && hole.reason.empty();
-  }
   bool companion(std::size_t loop) const;
   std::vector<std::vector<std::size_t>> groups() const;
   void decide(const std::vector<std::size_t>& pieces, std::map<std::size_t, std::string>& reasons);
@@ -130,8 +107,7 @@ VolumeSolution Run::solve(const Progress& progress) const {
     const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
     VolumeSolution one =
         solve_volumes(mesh_, topology_, neighbourhood_, options_, constraints,
-                      options_.seed + static_cast<std::uint64_t>(shift) * 0x9e3779b97f4a7c15ull,
-                      progress.part(from, to, "dividing space"));
+                      seed_of_division(options_, shift), progress.part(from, to, "dividing space"));
     if (!best || one.labelling.weight < best->labelling.weight) {
       best.reset();
       best.emplace(std::move(one));
@@ -140,17 +116,6 @@ VolumeSolution Run::solve(const Progress& progress) const {
   smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
   best->notes.insert(best->notes.begin(), constraints.notes().begin(), constraints.notes().end());
   return std::move(*best);
-}
-
-void Run::target_islands() {
-  if (!anything_to_do()) return;
-  for (std::size_t i = 0; i < loops_.size(); ++i) {
-    HoleReport& hole = report_.holes[i];
-    if (loops_[i].defect != LoopDefect::open_sheet || hole.reason != describe(LoopDefect::open_sheet))
-      continue;
-    hole.outcome = HoleOutcome::failed;
-    hole.reason.clear();
-  }
 }
 
 // A rim that no patch should close by itself, but that may be part of a larger hole: that of a single
@@ -182,7 +147,7 @@ void Run::take_pieces(const LabelledSurface& surface) {
   std::map<std::size_t, std::string> reasons;
   for (const std::vector<std::size_t>& group : groups()) decide(group, reasons);
   for (const auto& [loop, reason] : reasons)
-    if (targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
+    if (is_targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
 }
 
 // Pieces that share a loop stand or fall together.
@@ -216,8 +181,8 @@ void Run::decide(const std::vector<std::size_t>& group, std::map<std::size_t, st
   }
   for (std::size_t loop : loops) {
     const HoleReport& hole = report_.holes[loop];
-    any_target |= targeted(hole);
-    if (targeted(hole) || companion(loop) || !reason.empty()) continue;
+    any_target |= is_targeted(hole);
+    if (is_targeted(hole) || companion(loop) || !reason.empty()) continue;
     reason = hole.outcome == HoleOutcome::skipped
                  ? "one patch closes this hole and another that is to stay open (" + hole.reason + ")"
                  : "one patch closes this hole and another that cannot be closed (" + hole.reason + ")";
@@ -407,6 +372,21 @@ AtomicVolumesResult Run::result(CompletionReport report) {
 
 }  // namespace
 
+void check_options(const AtomicVolumesOptions& o) {
+  require(!o.max_depth || (*o.max_depth >= 3 && *o.max_depth <= 30),
+          "MaxDepth must lie between 3 and 30, or be 0 for as deep as the mesh needs.");
+  require(o.node_budget >= 1000, "NodeBudget must be at least 1000.");
+  require(o.shifts >= 1 && o.shifts <= 100, "Shifts must lie between 1 and 100.");
+  require(o.smoothing_iterations >= 0 && o.smoothing_iterations <= 1000,
+          "SmoothingIterations must lie between 0 and 1000.");
+  require(!o.edge_length || (std::isfinite(*o.edge_length) && *o.edge_length > 0),
+          "The edge length must be positive, or 0 for that of the mesh round the hole.");
+  require(std::isfinite(o.constraints.hint_price) && o.constraints.hint_price > 0,
+          "HintPrice must be positive.");
+  require(std::isfinite(o.constraints.symmetry_price) && o.constraints.symmetry_price > 0,
+          "SymmetryPrice must be positive.");
+}
+
 AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshSelection& selection,
                                            const AtomicVolumesOptions& options, const Progress& progress) {
   check_options(options);
@@ -416,8 +396,8 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
   const std::vector<BoundaryLoop> loops =
       trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
   report.holes = select_holes(mesh, loops, selection, options.holes);
+  target_islands(loops, report.holes);
   Run run(mesh, topology, loops, options, report);
-  run.target_islands();
   clock.end_of("finding the holes");
   AtomicVolumesFigures figures;
   if (run.anything_to_do()) {
@@ -433,6 +413,7 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
   }
   progress.update(1);
   AtomicVolumesResult result = run.result(std::move(report));
+  result.completion.report.figures = named(figures);
   result.figures = figures;
   return result;
 }
