@@ -171,7 +171,7 @@ TEST(Constraints, PointsThatCannotBeToldApartHaveNoEffect) {
   VolumeConstraints constraints;
   constraints.inside = constraints.outside = {{1, 0, 0}};
   const AtomicSolid same = complete_by_cut(mesh, constraints, 1);
-  EXPECT_TRUE(any_note_has(same.notes, "are given as inside and as outside"));
+  EXPECT_TRUE(any_note_has(same.notes, "given as inside and as outside"));
   EXPECT_EQ(same.leaves, plain.leaves);
   EXPECT_DOUBLE_EQ(same.area(), plain.area());
   constraints.outside[0][0] = std::nextafter(1.0, 2.0);  // within a cell of the greatest depth
@@ -187,8 +187,10 @@ TEST(Constraints, WhatTheMeshContradictsIsReported) {
   constraints.inside = {{9, 0, 0}};           // beyond the octree
   constraints.outside = {{0.02, 0, -0.985}};  // just behind the surface, where no blank cube is
   const AtomicSolid solid = complete_by_cut(mesh, constraints, 1, constraints.outside);
-  EXPECT_TRUE(any_note_has(solid.notes, "points given as inside are outside according to the mesh"));
-  EXPECT_TRUE(any_note_has(solid.notes, "points given as outside are inside according to the mesh"));
+  EXPECT_TRUE(any_note_has(
+      solid.notes,
+      "The point given as inside is outside according to the mesh, at (9, 0, 0); it has no effect."));
+  EXPECT_TRUE(any_note_has(solid.notes, "The point given as outside is inside according to the mesh"));
   EXPECT_EQ(solid.labels, std::vector<char>{1});
   constraints.inside = {{0.02, 0, -0.985}};
   constraints.outside = {{9, 0, 0}, {0.02, 0, -1.005}};
@@ -239,7 +241,7 @@ TEST(Constraints, InsidePointsWinAgainstViews) {
   const AtomicSolid solid = complete_by_cut(lumps(), constraints, 1, points);
   EXPECT_EQ(solid.labels, (std::vector<char>{1, 0, 0}));
   EXPECT_GT(solid.leaves, carved.leaves);
-  EXPECT_TRUE(any_note_has(solid.notes, "were not carved"));
+  EXPECT_TRUE(any_note_has(solid.notes, "not carved"));
 }
 
 TEST(Constraints, HintsHaveAPrice) {
