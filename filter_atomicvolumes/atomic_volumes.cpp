@@ -18,6 +18,7 @@
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
 #include "common/core/triangle_intersection.h"
+#include "filter_atomicvolumes/bubbles.h"
 #include "filter_atomicvolumes/finishing.h"
 #include "filter_atomicvolumes/hole_targets.h"
 #include "filter_atomicvolumes/rim_patch.h"
@@ -131,7 +132,10 @@ void Run::take_pieces(const LabelledSurface& surface) {
     for (std::size_t k = 0; k < loops_[i].faces.size(); ++k)
       loop_of[static_cast<std::uint64_t>(loops_[i].faces[k]) << 32 |
               loops_[i].vertices[(k + 1) % loops_[i].vertices.size()]] = i;
-  for (Sheet& sheet : split_into_sheets(mesh_, topology_, surface)) {
+  std::vector<Sheet> sheets = split_into_sheets(mesh_, topology_, surface);
+  for (std::string& note : describe_bubbles(sheets, options_.constraints))
+    report_.notes.push_back(std::move(note));
+  for (Sheet& sheet : sheets) {
     Piece piece;
     for (Index h : sheet.closes) {
       const auto found =
@@ -141,7 +145,7 @@ void Run::take_pieces(const LabelledSurface& surface) {
     std::sort(piece.loops.begin(), piece.loops.end());
     piece.loops.erase(std::unique(piece.loops.begin(), piece.loops.end()), piece.loops.end());
     piece.sheet = std::move(sheet);
-    // Pieces without a rim are bubbles, which nothing asked for.
+    // Pieces without a rim are bubbles.
     if (!piece.loops.empty()) pieces_.push_back(std::move(piece));
   }
   std::map<std::size_t, std::string> reasons;

@@ -73,6 +73,12 @@ class Tier {
  private:
   std::vector<VolumePlace> places_of(const std::vector<Vector3>& points, const Progress& progress) const;
   void mark(const std::vector<Vector3>& points, bool inside, const Progress& progress);
+  bool is_large_hole_leaf(Index leaf) const {
+    const VolumeKind kind = decomposition_.volumes[leaf].kind;
+    const double side =
+        static_cast<double>(Octree::side(decomposition_.octree[leaf].depth)) * mesh_.lattice.step();
+    return (kind == VolumeKind::vertex || kind == VolumeKind::edge) && side > constraints_.finest_leaf();
+  }
   void tie_marked();
   void carve(const Progress& progress);
   void tie_hints(const std::vector<Vector3>& points, bool inside, const Progress& progress);
@@ -113,6 +119,7 @@ void Tier::mark(const std::vector<Vector3>& points, bool inside, const Progress&
     } else if (inside ? place.kind == VolumePlace::outside || place.kind == VolumePlace::beyond
                       : place.kind == VolumePlace::inside) {
       if (contradicted++ == 0) first = points[i];
+      if (place.leaf != Octree::none && is_large_hole_leaf(place.leaf)) result_.split.push_back(place.leaf);
     }
   }
   const std::string given = inside ? " given as inside" : " given as outside";

@@ -180,9 +180,14 @@ TEST_F(CloseHolesTest, ALayerOfItsOwnAlsoWhenNothingHadToBeRemoved) {
 
 TEST_F(CloseHolesTest, WhenNothingWasClosedNothingIsRemoved) {
   const std::string before = test::document_state(document);
-  FakePlugin plugin({close_holes_filter(without_triangles({1, 2}))});
-  ASSERT_TRUE(
-      plugin.run(document, 0, [](RichParameterList& list) { list.setValue("MaxHoleEdges", IntValue(3)); }));
+  FakePlugin plugin({close_holes_filter(
+      [](const TriangleMesh& mesh, const MeshSelection&, const HoleSelectionOptions&, const Progress&) {
+        ClosedHoles result;
+        result.completion.patch.input_vertices = static_cast<Index>(mesh.vertices.size());
+        result.removed = std::vector<Index>{1, 2};
+        return result;
+      })});
+  ASSERT_TRUE(plugin.run(document));
   EXPECT_TRUE(plugin.last_report().removed_faces.empty());
   EXPECT_TRUE(test::document_state(document) == before);
 }

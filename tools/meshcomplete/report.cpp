@@ -55,7 +55,7 @@ QJsonObject filter_as_json(const FilterRecord& filter) {
   for (const auto& figure : filter.report.figures)
     figures.insert(QString::fromStdString(figure.first), number(figure.second));
   QJsonArray removed;
-  for (const Index face : filter.report.removed_faces) removed.append(number(face));
+  for (const Index face : filter.report.removed_faces) removed.append(number(std::size_t{face}));
   return {{"name", filter.name},
           {"parameters", parameters},
           {"done", filter.done},
