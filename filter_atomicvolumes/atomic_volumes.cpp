@@ -14,7 +14,9 @@
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
+#include "filter_atomicvolumes/bubbles.h"
 #include "filter_atomicvolumes/divisible_mesh.h"
+#include "filter_atomicvolumes/hole_targets.h"
 #include "filter_atomicvolumes/patch_pieces.h"
 #include "filter_atomicvolumes/piece_finishing.h"
 #include "filter_atomicvolumes/sheets.h"
@@ -25,21 +27,6 @@ namespace {
 
 void require(bool condition, const char* message) {
   if (!condition) throw CompletionError("reading the parameters", message);
-}
-
-void check_options(const AtomicVolumesOptions& o) {
-  require(!o.max_depth || (*o.max_depth >= 3 && *o.max_depth <= 30),
-          "MaxDepth must lie between 3 and 30, or be 0 for as deep as the mesh needs.");
-  require(o.node_budget >= 1000, "NodeBudget must be at least 1000.");
-  require(o.shifts >= 1 && o.shifts <= 100, "Shifts must lie between 1 and 100.");
-  require(o.smoothing_iterations >= 0 && o.smoothing_iterations <= 1000,
-          "SmoothingIterations must lie between 0 and 1000.");
-  require(!o.edge_length || (std::isfinite(*o.edge_length) && *o.edge_length > 0),
-          "The edge length must be positive, or 0 for that of the mesh round the hole.");
-  require(std::isfinite(o.constraints.hint_price) && o.constraints.hint_price > 0,
-          "HintPrice must be positive.");
-  require(std::isfinite(o.constraints.symmetry_price) && o.constraints.symmetry_price > 0,
-          "SymmetryPrice must be positive.");
 }
 
 // Octrees more that are tried for holes that the best one left open.
@@ -86,20 +73,11 @@ class Run {
         input_(mesh),
         report_(report) {}
 
-  bool anything_to_do() const {
-    return std::any_of(report_.holes.begin(), report_.holes.end(),
-                       [&](const HoleReport& h) { return targeted(h); });
-  }
-  /// Open sheets beside a surface whose holes are closed are islands, and their rims are closed too, together
-  /// with that of the hole round them if that takes less area.
-  void target_islands();
+  bool anything_to_do() const { return std::any_of(report_.holes.begin(), report_.holes.end(), is_targeted); }
   AtomicVolumesFigures close(const Progress& progress);
   AtomicVolumesResult result(CompletionReport report);
 
  private:
-  static bool targeted(const HoleReport& hole) {
-    return hole.outcome == HoleOutcome::failed && hole.reason.empty();
-  }
   bool companion(std::size_t loop) const;
   void refuse_sewn_loops();
   /// What space is divided by.
@@ -107,6 +85,7 @@ class Run {
   const MeshTopology& divided_topology() const { return divisible_ ? divisible_->topology : topology_; }
   const InputNeighbourhood& divided() const { return divisible_ ? divisible_->neighbourhood : input_; }
   VolumeSolution solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const;
+  std::vector<Sheet> sheets_of(const LabelledSurface& surface) const;
   std::vector<PatchPiece> pieces_of(const LabelledSurface& surface) const;
   std::size_t flawed_edges(const VolumeSolution& solution) const;
   VolumeSolution best_solution(const PreparedConstraints& constraints, const Progress& progress) const;
@@ -132,7 +111,7 @@ class Run {
 void Run::refuse_sewn_loops() {
   if (!divisible_ || !divisible_->merged) return;
   for (std::size_t i = 0; i < loops_.size(); ++i)
-    for (std::size_t k = 0; k < loops_[i].faces.size() && targeted(report_.holes[i]); ++k) {
+    for (std::size_t k = 0; k < loops_[i].faces.size() && is_targeted(report_.holes[i]); ++k) {
       const Index face = loops_[i].faces[k], next = loops_[i].vertices[(k + 1) % loops_[i].vertices.size()];
       const Triangle& t = mesh_.triangles[face];
       const Index corner = static_cast<Index>(std::find(t.begin(), t.end(), next) - t.begin());
@@ -144,12 +123,15 @@ void Run::refuse_sewn_loops() {
 
 VolumeSolution Run::solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const {
   return solve_volumes(divided_mesh(), divided_topology(), divided(), options_, constraints,
-                       options_.seed + static_cast<std::uint64_t>(shift) * 0x9e3779b97f4a7c15ull, progress);
+                       seed_of_division(options_, shift), progress);
+}
+
+std::vector<Sheet> Run::sheets_of(const LabelledSurface& surface) const {
+  return split_into_sheets(divided_mesh(), divided_topology(), surface, mesh_);
 }
 
 std::vector<PatchPiece> Run::pieces_of(const LabelledSurface& surface) const {
-  return make_pieces(split_into_sheets(divided_mesh(), divided_topology(), surface, mesh_), topology_,
-                     loop_numbers_);
+  return make_pieces(sheets_of(surface), topology_, loop_numbers_);
 }
 
 // How many edges of rims to be closed have a patch that cannot be used.
@@ -163,7 +145,7 @@ std::size_t Run::flawed_edges(const VolumeSolution& solution) const {
   for (const std::vector<std::size_t>& group : group_by_loops(pieces)) {
     if (flaw_of(pieces, group, loops_) == Sheet::Flaw::none) continue;
     for (std::size_t loop : loops_of(pieces, group))
-      if (targeted(report_.holes[loop])) edges += loops_[loop].faces.size();
+      if (is_targeted(report_.holes[loop])) edges += loops_[loop].faces.size();
   }
   return edges;
 }
@@ -186,17 +168,6 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
   return std::move(*best);
 }
 
-void Run::target_islands() {
-  if (!anything_to_do()) return;
-  for (std::size_t i = 0; i < loops_.size(); ++i) {
-    HoleReport& hole = report_.holes[i];
-    if (loops_[i].defect != LoopDefect::open_sheet || hole.reason != describe(LoopDefect::open_sheet))
-      continue;
-    hole.outcome = HoleOutcome::failed;
-    hole.reason.clear();
-  }
-}
-
 // A rim that no patch should close by itself, but that may be part of a larger hole: that of a single
 // triangle.
 bool Run::companion(std::size_t loop) const {
@@ -208,7 +179,7 @@ bool Run::companion(std::size_t loop) const {
 std::string Run::obstacle(const std::vector<std::size_t>& loops) const {
   for (std::size_t loop : loops) {
     const HoleReport& hole = report_.holes[loop];
-    if (targeted(hole) || companion(loop)) continue;
+    if (is_targeted(hole) || companion(loop)) continue;
     return hole.outcome == HoleOutcome::skipped
                ? "one patch closes this hole and another that is to stay open (" + hole.reason + ")"
                : "one patch closes this hole and another that cannot be closed (" + hole.reason + ")";
@@ -222,7 +193,7 @@ void Run::take_pieces(std::vector<PatchPiece> pieces) {
   for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
     const std::vector<std::size_t> loops = loops_of(pieces_, group);
     if (std::none_of(loops.begin(), loops.end(),
-                     [&](std::size_t loop) { return targeted(report_.holes[loop]); }))
+                     [&](std::size_t loop) { return is_targeted(report_.holes[loop]); }))
       continue;
     std::string reason = obstacle(loops);
     if (reason.empty()) reason = describe(flaw_of(pieces_, group, loops_));
@@ -231,7 +202,7 @@ void Run::take_pieces(std::vector<PatchPiece> pieces) {
       if (!reason.empty()) reasons[loop] = reason;
   }
   for (const auto& [loop, reason] : reasons)
-    if (targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
+    if (is_targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
 }
 
 // The loops that another octree may close.
@@ -245,7 +216,7 @@ std::vector<char> Run::left_open() const {
       open[loop] = defect || report_.holes[loop].reason == describe(Sheet::Flaw::open);
     }
   }
-  for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= targeted(report_.holes[i]) && !reached[i];
+  for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= is_targeted(report_.holes[i]) && !reached[i];
   return open;
 }
 
@@ -279,7 +250,7 @@ std::size_t Run::replace(std::vector<PatchPiece> fresh, const std::vector<char>&
       gone[i] = 1;
     }
     for (std::size_t loop : loops)
-      if (!taken[loop] && targeted(report_.holes[loop])) report_.holes[loop].reason = defect;
+      if (!taken[loop] && is_targeted(report_.holes[loop])) report_.holes[loop].reason = defect;
   }
   std::vector<PatchPiece> kept;
   for (std::size_t i = 0; i < pieces_.size(); ++i)
@@ -327,9 +298,11 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
   {
     const VolumeSolution solution = best_solution(constraints, progress.part(0, 0.4, "dividing space"));
     figures = solution.figures;
-    for (const std::vector<std::string>* notes : {&constraints.notes(), &solution.notes})
-      report_.notes.insert(report_.notes.end(), notes->begin(), notes->end());
-    take_pieces(pieces_of(solution.surface));
+    std::vector<Sheet> sheets = sheets_of(solution.surface);
+    for (const auto& notes :
+         {constraints.notes(), solution.notes, describe_bubbles(sheets, options_.constraints)})
+      report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
+    take_pieces(make_pieces(std::move(sheets), topology_, loop_numbers_));
   }
   clock.end_of("dividing space and cutting");
   const PieceFinisher finisher(mesh_, topology_, input_, divided(),
@@ -391,6 +364,21 @@ AtomicVolumesResult Run::result(CompletionReport report) {
 
 }  // namespace
 
+void check_options(const AtomicVolumesOptions& o) {
+  require(!o.max_depth || (*o.max_depth >= 3 && *o.max_depth <= 30),
+          "MaxDepth must lie between 3 and 30, or be 0 for as deep as the mesh needs.");
+  require(o.node_budget >= 1000, "NodeBudget must be at least 1000.");
+  require(o.shifts >= 1 && o.shifts <= 100, "Shifts must lie between 1 and 100.");
+  require(o.smoothing_iterations >= 0 && o.smoothing_iterations <= 1000,
+          "SmoothingIterations must lie between 0 and 1000.");
+  require(!o.edge_length || (std::isfinite(*o.edge_length) && *o.edge_length > 0),
+          "The edge length must be positive, or 0 for that of the mesh round the hole.");
+  require(std::isfinite(o.constraints.hint_price) && o.constraints.hint_price > 0,
+          "HintPrice must be positive.");
+  require(std::isfinite(o.constraints.symmetry_price) && o.constraints.symmetry_price > 0,
+          "SymmetryPrice must be positive.");
+}
+
 AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshSelection& selection,
                                            const AtomicVolumesOptions& options, const Progress& progress) {
   check_options(options);
@@ -400,13 +388,14 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
   const std::vector<BoundaryLoop> loops =
       trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
   report.holes = select_holes(mesh, loops, selection, options.holes);
+  target_islands(loops, report.holes);
   Run run(mesh, topology, loops, options, report);
-  run.target_islands();
   clock.end_of("finding the holes");
   AtomicVolumesFigures figures;
   if (run.anything_to_do()) figures = run.close(progress.part(0.1, 1, "dividing space"));
   progress.update(1);
   AtomicVolumesResult result = run.result(std::move(report));
+  result.completion.report.figures = named(figures);
   result.figures = figures;
   return result;
 }

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/fairing.h"
@@ -79,10 +81,16 @@ struct AtomicVolumesFigures {
   int restarts = 0;              ///< because a plane of the octree met a vertex, or two lines met in a point
 };
 
+/// The same, with names for reports.
+std::vector<std::pair<std::string, double>> named(const AtomicVolumesFigures& figures);
+
 struct AtomicVolumesResult {
   Completion completion;
   AtomicVolumesFigures figures;
 };
+
+/// Throws CompletionError on options out of range.
+void check_options(const AtomicVolumesOptions& options);
 
 /// Closes the selected holes of `mesh` by one global cut. A hole of the report may have several loops. The
 /// patch has passed `check_patch`. Deterministic whatever the number of threads. Throws `CompletionError` on

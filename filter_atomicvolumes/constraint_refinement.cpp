@@ -16,9 +16,10 @@ constexpr double finest_image_leaf = 1.0;
 constexpr double image_budget_share = 0.5;
 constexpr std::size_t most_image_cubes = 400000;
 
-// A seen-through leaf with an inside point is not split below this, in mean boundary edges: finer than what
-// the views resolve there is nothing to tell apart.
-constexpr double finest_carved_leaf = 0.25;
+// The share of what is left of the cube budget, and the most cubes, that points which the mesh contradicts
+// may use: layers that are not aligned have many.
+constexpr double point_budget_share = 0.25;
+constexpr std::size_t most_point_cubes = 200000;
 
 constexpr std::size_t grain = 256;
 
@@ -42,7 +43,12 @@ class Refiner {
     return !leaves.empty() && split_further(decomposition_, mesh_, options_, leaves, progress_);
   }
   bool separate_points(std::size_t first_new);
+  bool separate_from_mesh();
   bool separate_from_lines();
+  std::vector<Vector3> contradicted() const;
+  double side(Index leaf) const {
+    return static_cast<double>(Octree::side(decomposition_.octree[leaf].depth)) * mesh_.lattice.step();
+  }
   bool has_kind(Index leaf, VolumeKind kind) const { return decomposition_.volumes[leaf].kind == kind; }
 
   Decomposition& decomposition_;
@@ -87,17 +93,54 @@ bool Refiner::separate_points(std::size_t first_new) {
   }
 }
 
+// The points in crossed leaves that are on the other side of the mesh.
+std::vector<Vector3> Refiner::contradicted() const {
+  std::vector<Vector3> found;
+  for (const bool inside : {true, false}) {
+    const std::vector<Vector3>& points = inside ? constraints_.given().inside : constraints_.given().outside;
+    std::vector<char> against(points.size(), 0);
+    for_each(points.size(), grain, progress_, [&](std::size_t i) {
+      const auto at = find_leaf(mesh_.lattice, decomposition_.octree, points[i]);
+      if (!at || !has_kind(at->leaf, VolumeKind::crossed)) return;
+      const auto side = side_in_leaf(mesh_, decomposition_, constraints_.sides(), *at, points[i]);
+      against[i] = side && *side != inside;
+    });
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (against[i]) found.push_back(points[i]);
+  }
+  return found;
+}
+
+// In a large crossed leaf the mesh decides far beyond its faces.
+bool Refiner::separate_from_mesh() {
+  const std::vector<Vector3> points = contradicted();
+  const std::size_t size = decomposition_.octree.size(), budget = std::max(options_.cube_budget, size) - size;
+  const std::size_t most =
+      size +
+      std::min(most_point_cubes, static_cast<std::size_t>(point_budget_share * static_cast<double>(budget)));
+  bool any = false;
+  for (;;) {
+    std::vector<Index> leaves;
+    for (const Vector3& point : points)
+      if (const auto at = find_leaf(mesh_.lattice, decomposition_.octree, point))
+        if (has_kind(at->leaf, VolumeKind::crossed) && side(at->leaf) > constraints_.finest_leaf())
+          leaves.push_back(at->leaf);
+    std::sort(leaves.begin(), leaves.end());
+    leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+    if (decomposition_.octree.size() + 8 * leaves.size() > most || !split(leaves)) return any;
+    any = true;
+  }
+}
+
 bool Refiner::separate_from_lines() {
   if (constraints_.lines().empty() || constraints_.given().inside.empty()) return false;
-  const double finest = finest_carved_leaf * constraints_.spacing();
   bool any = false;
   for (;;) {
     const std::vector<std::uint8_t> marked = marks();
     std::vector<Index> leaves;
     for (Index leaf = 0; leaf < marked.size(); ++leaf) {
-      const double side =
-          static_cast<double>(Octree::side(decomposition_.octree[leaf].depth)) * mesh_.lattice.step();
-      if ((marked[leaf] & inside_point) && has_kind(leaf, VolumeKind::blank) && side > finest)
+      if ((marked[leaf] & inside_point) && has_kind(leaf, VolumeKind::blank) &&
+          side(leaf) > constraints_.finest_leaf())
         leaves.push_back(leaf);
     }
     if (leaves.empty()) return any;
@@ -113,6 +156,7 @@ bool Refiner::separate_from_lines() {
 bool Refiner::run(const std::vector<Index>& leaves) {
   const std::size_t first_new = decomposition_.octree.size();
   bool any = split(leaves);
+  any |= separate_from_mesh();
   any |= separate_points(first_new);
   any |= separate_from_lines();
   if (constraints_.symmetries() && options_.cube_budget > decomposition_.octree.size()) {

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/core/counted.h"
 #include "filter_atomicvolumes/threads.h"
 #include "filter_atomicvolumes/volume_locator.h"
 
@@ -72,15 +73,17 @@ class Tier {
  private:
   std::vector<VolumePlace> places_of(const std::vector<Vector3>& points, const Progress& progress) const;
   void mark(const std::vector<Vector3>& points, bool inside, const Progress& progress);
+  bool is_large_hole_leaf(Index leaf) const {
+    const VolumeKind kind = decomposition_.volumes[leaf].kind;
+    const double side =
+        static_cast<double>(Octree::side(decomposition_.octree[leaf].depth)) * mesh_.lattice.step();
+    return (kind == VolumeKind::vertex || kind == VolumeKind::edge) && side > constraints_.finest_leaf();
+  }
   void tie_marked();
   void carve(const Progress& progress);
   void tie_hints(const std::vector<Vector3>& points, bool inside, const Progress& progress);
   void tie_images(const Progress& progress);
-  void measure_faces();
   std::vector<Vector3> middles() const;
-  void note(std::size_t count, const std::string& what) {
-    if (count > 0) result_.notes.push_back(std::to_string(count) + what);
-  }
 
   const LatticeMesh& mesh_;
   const Decomposition& decomposition_;
@@ -89,8 +92,7 @@ class Tier {
   const PreparedConstraints& constraints_;
   std::vector<std::uint8_t> marks_;                   // per node
   std::vector<std::pair<Cell, VolumePlace>> marked_;  // every node that a point lies in, with duplicates
-  std::vector<double> faces_;                         // per node: the area, or number, of its faces
-  double mean_face_ = 0;                              // area, mesh units squared
+  FaceMeasure faces_;
   TiedConstraints result_;
 };
 
@@ -117,14 +119,19 @@ void Tier::mark(const std::vector<Vector3>& points, bool inside, const Progress&
     } else if (inside ? place.kind == VolumePlace::outside || place.kind == VolumePlace::beyond
                       : place.kind == VolumePlace::inside) {
       if (contradicted++ == 0) first = points[i];
+      if (place.leaf != Octree::none && is_large_hole_leaf(place.leaf)) result_.split.push_back(place.leaf);
     }
   }
-  const std::string name = inside ? "inside" : "outside", opposite = inside ? "outside" : "inside";
-  note(contradicted, " of the " + std::to_string(points.size()) + " points given as " + name + " are " +
-                         opposite + " according to the mesh, the first at " + written(first) +
-                         "; they have no effect.");
-  note(unknown, " of the " + std::to_string(points.size()) + " points given as " + name +
-                    " lie on the mesh; they have no effect.");
+  const std::string given = inside ? " given as inside" : " given as outside";
+  const std::string opposite = (inside ? " outside" : " inside") + std::string(" according to the mesh, ");
+  const auto note = [&](std::size_t count, const std::string& one, const std::string& many) {
+    if (count > 0)
+      result_.notes.push_back(counted_of(count, points.size(), "point" + given, "points" + given,
+                                         one + "; it has no effect.", many + "; they have no effect."));
+  };
+  note(contradicted, "is" + opposite + "at " + written(first),
+       "are" + opposite + "the first at " + written(first));
+  note(unknown, "lies on the mesh", "lie on the mesh");
 }
 
 void Tier::tie_marked() {
@@ -140,8 +147,10 @@ void Tier::tie_marked() {
       result_.split.push_back(place.leaf);
   std::sort(result_.split.begin(), result_.split.end());
   result_.split.erase(std::unique(result_.split.begin(), result_.split.end()), result_.split.end());
-  note(both,
-       " volumes hold points given as inside and points given as outside; neither has an effect there.");
+  if (both > 0)
+    result_.notes.push_back(
+        counted(both, "volume holds", "volumes hold") +
+        " points given as inside and points given as outside; neither has an effect there.");
 }
 
 void Tier::carve(const Progress& progress) {
@@ -156,37 +165,16 @@ void Tier::carve(const Progress& progress) {
     else if (!marks_[node])
       result_.ties.push_back({static_cast<Cell>(node), false, no_price});
   }
-  note(kept, " volumes that were seen through hold a point given as inside and were not carved.");
-}
-
-// The faces are counted as the cut counts them.
-void Tier::measure_faces() {
-  faces_.assign(complex_.nodes, 0);
-  double total = 0;
-  const auto add = [&](Cell behind, Cell before, double area) {
-    total += area;
-    for (Cell cell : {behind, before})
-      if (cell >= 0) faces_[static_cast<std::size_t>(cell)] += weight_ == CutWeight::area ? area : 1;
-  };
-  for (const VolumeFace& face : complex_.faces) {
-    const Vector3& p = complex_.vertices[face.corners[0]].position;
-    add(face.behind, face.before,
-        0.5 * (complex_.vertices[face.corners[1]].position - p)
-                  .cross(complex_.vertices[face.corners[2]].position - p)
-                  .norm());
-  }
-  for (const VolumeSquare& s : complex_.whole_squares) {
-    const double side = static_cast<double>(complex_.squares[s.square].length) * mesh_.lattice.step();
-    add(s.behind, s.before, side * side);
-  }
-  const std::size_t count = complex_.faces.size() + complex_.whole_squares.size();
-  mean_face_ = count > 0 ? total / static_cast<double>(count) : 1;
+  if (kept > 0)
+    result_.notes.push_back(
+        counted(kept, "volume that was seen through holds a point given as inside and was not carved.",
+                "volumes that were seen through hold a point given as inside and were not carved."));
 }
 
 void Tier::tie_hints(const std::vector<Vector3>& points, bool inside, const Progress& progress) {
   if (points.empty()) return;
   double price = constraints_.given().hint_price * constraints_.diagonal() * constraints_.diagonal();
-  if (weight_ == CutWeight::unit) price /= mean_face_;
+  if (weight_ == CutWeight::unit) price /= faces_.mean_area;
   for (const VolumePlace& place : places_of(points, progress))
     if (place.kind == VolumePlace::free) result_.ties.push_back({place.node, inside, price});
 }
@@ -221,8 +209,9 @@ void Tier::tie_images(const Progress& progress) {
     });
     for (std::size_t node = 0; node < inside.size(); ++node)
       if (inside[node] != 0)
-        result_.ties.push_back({static_cast<Cell>(node), inside[node] > 0,
-                                std::abs(inside[node]) * constraints_.given().symmetry_price * faces_[node]});
+        result_.ties.push_back(
+            {static_cast<Cell>(node), inside[node] > 0,
+             std::abs(inside[node]) * constraints_.given().symmetry_price * faces_.of_node[node]});
   }
 }
 
@@ -235,7 +224,7 @@ TiedConstraints Tier::run(const Progress& progress) {
   progress.update(0.2);
   carve(progress);
   progress.update(0.4);
-  measure_faces();
+  faces_ = measure_faces(mesh_, complex_, weight_);
   tie_hints(given.hinted_inside, true, progress);
   tie_hints(given.hinted_outside, false, progress);
   progress.update(0.5);
@@ -279,8 +268,8 @@ void PreparedConstraints::leave_out_useless_points() {
     points->erase(end, points->end());
   }
   if (left_out > 0)
-    lines_.notes.push_back(std::to_string(left_out) +
-                           " points have coordinates that are not finite and were left out.");
+    lines_.notes.push_back(counted(left_out, "point has coordinates that are not finite and was left out.",
+                                   "points have coordinates that are not finite and were left out."));
   std::vector<Vector3> inside = given_.inside, outside = given_.outside, both;
   std::sort(inside.begin(), inside.end(), precedes);
   std::sort(outside.begin(), outside.end(), precedes);
@@ -294,9 +283,10 @@ void PreparedConstraints::leave_out_useless_points() {
                                    return std::binary_search(both.begin(), both.end(), p, precedes);
                                  }),
                   points->end());
-  lines_.notes.push_back(std::to_string(both.size()) +
-                         " points are given as inside and as outside, the first at " + written(both.front()) +
-                         "; neither has an effect.");
+  const std::string where = written(both.front());
+  lines_.notes.push_back(
+      counted(both.size(), "point is given as inside and as outside, at " + where + "; it has no effect.",
+              "points are given as inside and as outside, the first at " + where + "; they have no effect."));
 }
 
 TiedConstraints tie_constraints(const LatticeMesh& mesh, const Decomposition& decomposition,

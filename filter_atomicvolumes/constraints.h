@@ -36,6 +36,8 @@ class PreparedConstraints {
   const std::vector<LineOfSight>& lines() const { return lines_.lines; }
   const SideFinder& sides() const { return *sides_; }  ///< where there are points or symmetries
   const SymmetryHints* symmetries() const { return symmetries_.get(); }  ///< absent: none
+  /// Leaves are not split for points below this side, mesh units: a quarter of `spacing`.
+  double finest_leaf() const { return 0.25 * spacing_; }
   double spacing() const { return spacing_; }    ///< mean length of boundary edges, mesh units
   double diagonal() const { return diagonal_; }  ///< of the mesh's bounding box, mesh units
   const std::vector<std::string>& notes() const { return lines_.notes; }  ///< for the user
@@ -52,6 +54,9 @@ class PreparedConstraints {
 
 /// Splits leaves that constraints and hints need finer, before the complex is built:
 /// - blank leaves that hold an inside and an outside point, until these are apart;
+/// - crossed leaves in which the mesh contradicts a point, until it is in a blank leaf or its leaf is no
+/// larger
+///   than a quarter of the mesh's boundary edges: in a large leaf the mesh decides far beyond its faces;
 /// - blank leaves that are seen through and hold an inside point, until they are no larger than a quarter of
 ///   the mesh's boundary edges;
 /// - blank leaves that an image of the mesh under a symmetry crosses where the mesh is missing, until they
@@ -65,8 +70,9 @@ bool refine_for_constraints(Decomposition& decomposition, const LatticeMesh& mes
 
 struct TiedConstraints {
   std::vector<NodeTie> ties;
-  /// Leaves with points inside and outside in one volume, ascending: refine for them and build the complex
-  /// again. As long as that is not done, or cannot be (at the greatest depth), such volumes are not tied.
+  /// Leaves with points inside and outside in one volume, and hole leaves larger than a quarter of the mesh's
+  /// boundary edges in which the mesh contradicts a point; ascending. Refine for them and build the complex
+  /// again. As long as that is not done, or cannot be (at the greatest depth), such points have no effect.
   std::vector<Index> split;
   std::vector<std::string> notes;  ///< for the user: what could not be imposed
 };

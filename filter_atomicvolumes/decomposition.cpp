@@ -37,7 +37,6 @@ class Decomposer {
  private:
   Verdict judge(const Pending& pending) const;
   Verdict judge_hole(const Pending& pending, const LatticeBox& box) const;
-  bool constraints_contradict(const LatticeBox& box) const;
   std::array<Pending, 8> divide(const Pending& parent, Index first_child) const;
 
   const LatticeMesh& mesh_;
@@ -79,13 +78,6 @@ Pending Decomposer::at(Index leaf) const {
   return pending;
 }
 
-bool Decomposer::constraints_contradict(const LatticeBox& box) const {
-  const auto any = [&](const std::vector<LatticePoint>& points) {
-    return std::any_of(points.begin(), points.end(), [&](const LatticePoint& p) { return box.contains(p); });
-  };
-  return any(options_.inside) && any(options_.outside);
-}
-
 Verdict Decomposer::judge_hole(const Pending& pending, const LatticeBox& box) const {
   Verdict verdict;
   Volume& volume = verdict.volume;
@@ -118,7 +110,7 @@ Verdict Decomposer::judge(const Pending& pending) const {
   const LatticeBox box = result_.octree.box(pending.cube);
   const bool last = result_.octree[pending.cube].depth >= options_.max_depth;
   Verdict verdict;
-  if (!last && (pending.split || constraints_contradict(box))) {
+  if (!last && pending.split) {
     verdict.split = true;
     return verdict;
   }

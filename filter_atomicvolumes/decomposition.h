@@ -30,8 +30,6 @@ struct Volume {
 struct DecompositionOptions {
   int max_depth = Lattice::depth;
   std::size_t cube_budget = 5000000;
-  /// Cubes that hold both an inside and an outside point are split.
-  std::vector<LatticePoint> inside, outside;
 };
 
 struct Decomposition {

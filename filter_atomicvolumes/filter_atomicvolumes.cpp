@@ -7,6 +7,7 @@
 #include "common/host/close_holes.h"
 #include "common/host/other_layers.h"
 #include "filter_atomicvolumes/atomic_volumes.h"
+#include "filter_atomicvolumes/offending_faces.h"
 
 using namespace meshcomplete;
 using namespace meshcomplete::host;
@@ -30,6 +31,11 @@ std::vector<ParameterDeclaration> cut_parameters() {
       integer_parameter("MaxDepth", "Maximum depth",
                         "How often the cube around the mesh may be halved, 3 to 30. 0: as often as needed.",
                         "levels", 0, 0, 30),
+      choice_parameter(
+          "DepthLimit", "At the depth limit",
+          "What is done where the faces at a hole are still too many for one cube. Removing them "
+          "makes the result a new layer without them, and the log names them.",
+          {"Cut cubes into convex cells", "Remove the faces there, in a new layer"}),
       integer_parameter("NodeBudget", "Most volumes",
                         "The filter stops with a message when it would need more volumes than this.",
                         "volumes", 5000000, 1000, any),
@@ -161,23 +167,16 @@ void apply(FilterRun& run) {
       notes.push_back(symmetry ? "Symmetry: " + describe(*symmetry)
                                : "Symmetry: the mesh has none of this kind, so it was completed without");
     }
-    AtomicVolumesResult result =
-        fill_by_atomic_volumes(mesh, selection, options, progress.part(0.1, 1, "closing holes"));
-    CompletionReport& report = result.completion.report;
-    report.notes.insert(report.notes.begin(), notes.begin(), notes.end());
-    const AtomicVolumesFigures& figures = result.figures;
-    report.figures = {{"leaves", double(figures.leaves)},
-                      {"blank leaves", double(figures.blank_leaves)},
-                      {"hole leaves", double(figures.hole_leaves)},
-                      {"crossed leaves", double(figures.crossed_leaves)},
-                      {"nodes", double(figures.nodes)},
-                      {"tetrahedra", double(figures.tetrahedra)},
-                      {"depth", double(figures.depth)},
-                      {"smallest leaf", figures.smallest_leaf},
-                      {"smallest distance", figures.smallest_distance},
-                      {"cut weight", figures.cut_weight},
-                      {"restarts", double(figures.restarts)}};
-    return ClosedHoles{std::move(result.completion), {}};
+    const Progress rest = progress.part(0.1, 1, "closing holes");
+    const bool removes = run.parameters.choice("DepthLimit") == 1;
+    ReducedCompletion done =
+        removes ? fill_without_offending_faces(mesh, selection, options, rest)
+                : ReducedCompletion{fill_by_atomic_volumes(mesh, selection, options, rest), {}};
+    ClosedHoles closed{std::move(done.result.completion), {}};
+    std::vector<std::string>& all_notes = closed.completion.report.notes;
+    all_notes.insert(all_notes.begin(), notes.begin(), notes.end());
+    if (removes) closed.removed = std::move(done.removed);
+    return closed;
   });
 }
 

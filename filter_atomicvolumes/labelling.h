@@ -15,7 +15,7 @@ namespace meshcomplete {
 struct NodeTie {
   Cell node;
   bool inside;
-  double price;  ///< mesh units squared; infinite for a constraint
+  double price;  ///< mesh units squared, or a number of faces for the unit weight; infinite for a constraint
 };
 
 struct Labelling {
@@ -26,6 +26,15 @@ struct Labelling {
     return cell >= 0 ? inside[static_cast<std::size_t>(cell)] : cell == inside_cell;
   }
 };
+
+/// What the faces of volumes come to.
+struct FaceMeasure {
+  std::vector<double> of_node;  ///< per node: the area of its faces, mesh units squared, or their number
+  double mean_area = 1;         ///< of a face, mesh units squared
+};
+
+/// As the cut counts them: a square between two cubes is one face. Cost: O(faces).
+FaceMeasure measure_faces(const LatticeMesh& mesh, const VolumeComplex& complex, CutWeight weight);
 
 /// The labelling of least weight. Source: the paper's section 4. Faces beside unknown volumes cost nothing.
 /// Cost: that of the minimum cut, near-linear in practice.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "common/core/counted.h"
 #include "filter_atomicvolumes/threads.h"
 #include "filter_atomicvolumes/volume_locator.h"
 
@@ -235,15 +236,17 @@ LinesOfSight lines_of_sight(const TriangleBlocks& blocks, const std::vector<Volu
     });
     for (std::size_t i = 0; i < lines.size(); ++i)
       if (fates[i] == Fate::whole || fates[i] == Fate::cut) result.lines.push_back(lines[i]);
-    const auto count = [&](Fate fate) { return std::count(fates.begin(), fates.end(), fate); };
-    const std::string whose =
-        " of the " + std::to_string(lines.size()) + " lines of sight of view " + std::to_string(v + 1);
-    if (count(Fate::cut) > 0)
-      result.notes.push_back(std::to_string(count(Fate::cut)) + whose +
-                             " meet the mesh on the way and were ended there.");
-    if (count(Fate::from_behind) > 0)
-      result.notes.push_back(std::to_string(count(Fate::from_behind)) + whose +
-                             " meet the mesh from behind and were left out.");
+    const auto note = [&](Fate fate, const char* one, const char* many) {
+      const auto count = static_cast<std::size_t>(std::count(fates.begin(), fates.end(), fate));
+      const std::string view_number = " of sight of view " + std::to_string(v + 1);
+      if (count > 0)
+        result.notes.push_back(
+            counted_of(count, lines.size(), "line" + view_number, "lines" + view_number, one, many));
+    };
+    note(Fate::cut, "meets the mesh on the way and was ended there.",
+         "meet the mesh on the way and were ended there.");
+    note(Fate::from_behind, "meets the mesh from behind and was left out.",
+         "meet the mesh from behind and were left out.");
   }
   return result;
 }

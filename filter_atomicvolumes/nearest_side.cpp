@@ -5,45 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "common/core/closest_point.h"
+
 namespace meshcomplete {
 namespace {
 
 // Triangles in a leaf of the tree: a box costs as much memory as four triangles' numbers and time as two of
 // them.
 constexpr std::size_t leaf_size = 8;
-
-// The point of a triangle that is closest to another point, and what it lies on.
-struct Closest {
-  enum Place { face = -1, edge = 0, corner = 3 };  // `edge` + k from corner k to the next, `corner` + k
-  Vector3 position;
-  int place;
-};
-
-// Ericson, Real-Time Collision Detection, section 5.1.5.
-Closest closest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
-  const Vector3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
-  if (d1 <= 0 && d2 <= 0) return {a, Closest::corner};
-  if (d3 >= 0 && d4 <= d3) return {b, Closest::corner + 1};
-  if (d6 >= 0 && d5 <= d6) return {c, Closest::corner + 2};
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + d1 / (d1 - d3) * ab, Closest::edge};
-  if (va <= 0 && d4 >= d3 && d5 >= d6)
-    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), Closest::edge + 1};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + d2 / (d2 - d6) * ac, Closest::edge + 2};
-  const double total = va + vb + vc;
-  return {a + vb / total * ab + vc / total * ac, Closest::face};
-}
-
-double squared_distance(const Box& box, const Vector3& p) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double outside = std::max({box.low[k] - p[k], p[k] - box.high[k], 0.0});
-    sum += outside * outside;
-  }
-  return sum;
-}
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -95,14 +64,14 @@ Vector3 SideFinder::normal(Index triangle) const {
 
 NearestSide SideFinder::side_of(const Vector3& point, Index triangle) const {
   const Triangle& t = mesh_.triangles[triangle];
-  const Closest closest =
-      closest_on_triangle(point, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+  const ClosestPoint closest =
+      closest_point(point, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
   const Vector3 offset = point - closest.position;
   NearestSide result{offset.norm(), std::nullopt};
   Vector3 pseudo_normal = normal(triangle);
-  if (closest.place >= Closest::corner) {
-    pseudo_normal = vertex_normals_[t[static_cast<std::size_t>(closest.place - Closest::corner)]];
-  } else if (closest.place >= Closest::edge) {
+  if (closest.place >= ClosestPoint::corner) {
+    pseudo_normal = vertex_normals_[t[static_cast<std::size_t>(closest.place - ClosestPoint::corner)]];
+  } else if (closest.place >= ClosestPoint::edge) {
     const Index other = topology_.opposite[3 * triangle + static_cast<Index>(closest.place)];
     if (other / 3 >= mesh_.triangles.size()) return result;  // boundary, or more than two faces
     pseudo_normal += normal(other / 3);
@@ -117,8 +86,8 @@ NearestSide SideFinder::nearest(const Vector3& point, Index& near, double radius
   Index found = static_cast<Index>(mesh_.triangles.size());
   const auto offer = [&](Index t) {
     const Triangle& corners = mesh_.triangles[t];
-    const Closest closest = closest_on_triangle(point, mesh_.vertices[corners[0]], mesh_.vertices[corners[1]],
-                                                mesh_.vertices[corners[2]]);
+    const ClosestPoint closest = closest_point(point, mesh_.vertices[corners[0]], mesh_.vertices[corners[1]],
+                                               mesh_.vertices[corners[2]]);
     const double distance = (closest.position - point).squaredNorm();
     // Of triangles with the same nearest point the first: it does not matter where the search began.
     if (!(distance < best) && !(distance == best && t < found)) return;

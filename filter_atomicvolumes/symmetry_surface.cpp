@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/core/closest_point.h"
 #include "common/core/error.h"
 
 namespace meshcomplete {
@@ -24,30 +25,6 @@ constexpr double table_margin = 0.1;
 // them.
 constexpr std::size_t leaf_size = 8;
 
-// The point of triangle abc that is closest to p, and where it lies.
-struct Closest {
-  enum Place { inside = -1, edge = 0, corner = 3 };  // `edge` k from corner k to the next; `corner` + k
-  Vector3 position = Vector3::Zero();
-  int place = inside;
-};
-
-// Ericson, Real-Time Collision Detection, section 5.1.5.
-Closest closest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
-  const Vector3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
-  if (d1 <= 0 && d2 <= 0) return {a, Closest::corner};
-  if (d3 >= 0 && d4 <= d3) return {b, Closest::corner + 1};
-  if (d6 >= 0 && d5 <= d6) return {c, Closest::corner + 2};
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + d1 / (d1 - d3) * ab, Closest::edge};
-  if (va <= 0 && d4 >= d3 && d5 >= d6)
-    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), Closest::edge + 1};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + d2 / (d2 - d6) * ac, Closest::edge + 2};
-  const double total = va + vb + vc;
-  return {a + vb / total * ab + vc / total * ac, Closest::inside};
-}
-
 Vector3 area_vector(const TriangleMesh& mesh, Index triangle) {
   const Triangle& t = mesh.triangles[triangle];
   const Vector3& a = mesh.vertices[t[0]];
@@ -58,15 +35,6 @@ Vector3 area_vector(const TriangleMesh& mesh, Index triangle) {
 double area_of(const TriangleMesh& mesh, Index triangle) {
   const double area = area_vector(mesh, triangle).norm();
   return std::isfinite(area) ? area : 0;
-}
-
-double squared_distance(const Box& box, const Vector3& p) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double outside = std::max(std::max(box.low[k] - p[k], p[k] - box.high[k]), 0.0);
-    sum += outside * outside;
-  }
-  return sum;
 }
 
 // Calls take(item, i, position) for the positions (i + 1/2) / count of the way along items laid end to end;
@@ -248,14 +216,14 @@ template <class Accept>
 bool SampledSurface::search(const Vector3& x, double radius, Accept&& accept, SurfacePoint& found) const {
   double best = radius * radius;
   std::size_t nearest = order_.size();
-  Closest closest;
+  ClosestPoint closest;
   const auto try_triangle = [&](std::size_t i) {
     const Vector3 a = corners_[3 * i].cast<double>(), b = corners_[3 * i + 1].cast<double>(),
                   c = corners_[3 * i + 2].cast<double>();
     const Vector3 normal = (b - a).cross(c - a);
     const double squared_length = normal.squaredNorm(), height = normal.dot(x - a);
     if (!(height * height < best * squared_length) || !accept(normal, squared_length)) return;
-    const Closest here = closest_on_triangle(x, a, b, c);
+    const ClosestPoint here = closest_point(x, a, b, c);
     const double distance = (here.position - x).squaredNorm();
     if (!(distance < best)) return;
     best = distance;
@@ -276,9 +244,9 @@ bool SampledSurface::search(const Vector3& x, double radius, Accept&& accept, Su
 }
 
 bool SampledSurface::is_on_rim(Index triangle, int place) const {
-  if (place >= Closest::corner)
-    return rim_vertex_[mesh_.triangles[triangle][static_cast<std::size_t>(place - Closest::corner)]];
-  return place >= Closest::edge &&
+  if (place >= ClosestPoint::corner)
+    return rim_vertex_[mesh_.triangles[triangle][static_cast<std::size_t>(place - ClosestPoint::corner)]];
+  return place >= ClosestPoint::edge &&
          topology_.opposite[3 * triangle + static_cast<Index>(place)] == MeshTopology::boundary;
 }
 

@@ -14,4 +14,12 @@ namespace meshcomplete {
 void for_ranges(std::size_t count, std::size_t grain, const Progress& progress,
                 const std::function<void(std::size_t begin, std::size_t end)>& work);
 
+/// The same, one number at a time; of the exceptions that of the lowest number is thrown.
+template <class Work>
+void for_each(std::size_t count, std::size_t grain, const Progress& progress, Work&& work) {
+  for_ranges(count, grain, progress, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
+}
+
 }  // namespace meshcomplete

@@ -1,10 +1,6 @@
 #include "filter_atomicvolumes/volume_complex.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <mutex>
 #include <optional>
 #include <unordered_map>
@@ -14,33 +10,13 @@
 #include "filter_atomicvolumes/cell_faces.h"
 #include "filter_atomicvolumes/crossed_cube.h"
 #include "filter_atomicvolumes/hole_cube.h"
+#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {
 
-// Not numbered yet.
-constexpr Cell free_cell = -4;
-
-// Runs `work(i)` for all i in threads; the first exception, by number, is thrown when all are done.
-template <class Work>
-void for_each(std::size_t count, const Progress& progress, Work&& work) {
-  std::mutex mutex;
-  std::exception_ptr error;
-  std::size_t first = count;
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
-    try {
-      if (i % 64 == 0) progress.check();
-      work(i);
-    } catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (i < first) {
-        first = i;
-        error = std::current_exception();
-      }
-    }
-  });
-  if (error) std::rethrow_exception(error);
-}
+// Squares and cubes per task: most are done in microseconds. A cube with convex cells is a task of its own.
+constexpr std::size_t grain = 32;
 
 class ComplexBuilder {
  public:
@@ -129,7 +105,7 @@ void ComplexBuilder::list_squares() {
 void ComplexBuilder::triangulate(const Progress& progress) {
   std::vector<char> tangled(octree_.size(), 0);
   std::mutex mutex;
-  for_each(complex_.squares.size(), progress, [&](std::size_t i) {
+  for_each(complex_.squares.size(), grain, progress, [&](std::size_t i) {
     const LeafSquare& s = complex_.squares[i];
     if (!is_triangulated(static_cast<Index>(i))) return;
     // All cubes at a square know the triangles that meet it.
@@ -241,7 +217,7 @@ void ComplexBuilder::fill_hole_cubes(const Progress& progress) {
   for (Index cube = 0; cube < octree_.size(); ++cube)
     if (octree_.is_leaf(cube) && is_hole(cube)) cubes.push_back(cube);
   std::vector<HoleCubeSurface> surfaces(cubes.size());
-  for_each(cubes.size(), progress, [&](std::size_t i) { surfaces[i] = surface_of(cubes[i]); });
+  for_each(cubes.size(), grain, progress, [&](std::size_t i) { surfaces[i] = surface_of(cubes[i]); });
   for (std::size_t i = 0; i < cubes.size(); ++i) add_tetrahedra(cubes[i], surfaces[i]);
 }
 
@@ -281,32 +257,41 @@ bool ComplexBuilder::is_crossed(Index square) const {
   return false;
 }
 
-// The sides of all triangles of a square that the mesh crosses.
+// The sides of all triangles of a square that the mesh crosses: those along a segment have one, and it
+// spreads over the sides of triangles where there is no segment.
 std::vector<Side> ComplexBuilder::flood_square(const SquareData& data) const {
   const auto& triangles = data.triangulation.triangles;
-  const auto directed = [&](Index from, Index to) {
-    return std::any_of(data.triangulation.segments.begin(), data.triangulation.segments.end(),
-                       [&](const SquareTriangulation::Segment& s) { return s.from == from && s.to == to; });
+  using Directed = std::pair<Index, Index>;
+  std::vector<Directed> segments;
+  for (const SquareTriangulation::Segment& s : data.triangulation.segments)
+    segments.emplace_back(s.from, s.to);
+  std::sort(segments.begin(), segments.end());
+  const auto is_segment = [&](Index from, Index to) {
+    return std::binary_search(segments.begin(), segments.end(), Directed(from, to));
   };
+  std::vector<std::pair<Directed, std::size_t>> owners;  // the triangle with each side
   std::vector<Side> sides(triangles.size(), Side::free);
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (int k = 0; k < 3 && sides[t] == Side::free; ++k) {
-        const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-        if (directed(a, b)) {
-          sides[t] = Side::outside;
-        } else if (directed(b, a)) {
-          sides[t] = Side::inside;
-        } else {
-          for (std::size_t u = 0; u < triangles.size(); ++u)
-            for (int m = 0; m < 3; ++m)
-              if (triangles[u][m] == b && triangles[u][(m + 1) % 3] == a) sides[t] = sides[u];
-        }
-        changed |= sides[t] != Side::free;
-      }
+  std::vector<std::size_t> reached;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+      const bool forth = is_segment(a, b), back = !forth && is_segment(b, a);
+      if (!forth && !back) owners.push_back({{a, b}, t});
+      if (sides[t] != Side::free || (!forth && !back)) continue;
+      sides[t] = forth ? Side::outside : Side::inside;
+      reached.push_back(t);
     }
-  }
+  std::sort(owners.begin(), owners.end());
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const auto& t = triangles[reached[i]];
+      const Directed across(t[(k + 1) % 3], t[k]);
+      const auto next =
+          std::lower_bound(owners.begin(), owners.end(), std::make_pair(across, std::size_t(0)));
+      if (next == owners.end() || next->first != across || sides[next->second] != Side::free) continue;
+      sides[next->second] = sides[reached[i]];
+      reached.push_back(next->second);
+    }
   return sides;
 }
 
@@ -376,7 +361,7 @@ void ComplexBuilder::label_crossed_cubes(const Progress& progress) {
   std::vector<Index> cubes;
   for (Index cube = 0; cube < octree_.size(); ++cube)
     if (octree_.is_leaf(cube) && has_kind(cube, VolumeKind::crossed)) cubes.push_back(cube);
-  for_each(cubes.size(), progress, [&](std::size_t i) { label_crossed_cube(cubes[i]); });
+  for_each(cubes.size(), grain, progress, [&](std::size_t i) { label_crossed_cube(cubes[i]); });
 }
 
 void ComplexBuilder::add_square_faces() {
@@ -409,7 +394,7 @@ void ComplexBuilder::add_square_faces() {
 
 std::optional<VolumeComplex> ComplexBuilder::build(const Progress& progress) {
   cell_cubes_.list();
-  for_each(cell_cubes_.cubes().size(), progress,
+  for_each(cell_cubes_.cubes().size(), 1, progress,
            [&](std::size_t i) { cell_cubes_.cut(i, squares_of(cell_cubes_.cubes()[i])); });
   cell_cubes_.meet();
   triangulate(progress);

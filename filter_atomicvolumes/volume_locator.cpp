@@ -29,6 +29,15 @@ std::optional<LeafOfPoint> find_leaf(const Lattice& lattice, const Octree& octre
   return LeafOfPoint{octree.find(p), p};
 }
 
+std::optional<bool> side_in_leaf(const LatticeMesh& mesh, const Decomposition& decomposition,
+                                 const SideFinder& sides, const LeafOfPoint& at, const Vector3& point) {
+  const std::vector<Index>& triangles = decomposition.volumes[at.leaf].triangles;
+  if (triangles.empty()) return std::nullopt;
+  Index near = triangles.front();
+  const std::optional<bool> side = sides.nearest(point, near).inside;
+  return side ? side : is_inside(mesh, triangles, decomposition.octree.box(at.leaf), at.point);
+}
+
 std::array<Vector3, 4> corners_of(const VolumeComplex& complex, const VolumeComplex::Tetrahedron& t) {
   return {complex.vertices[t.base[0]].position, complex.vertices[t.base[1]].position,
           complex.vertices[t.base[2]].position, complex.vertices[t.apex].position};
@@ -69,10 +78,8 @@ VolumePlace VolumeLocator::locate(const Vector3& point) const {
     place.kind = VolumePlace::free;
     return place;
   }
-  if (find_part(point, place) || volume.triangles.empty()) return place;
-  Index near = volume.triangles.front();
-  std::optional<bool> side = sides_.nearest(point, near).inside;
-  if (!side) side = is_inside(mesh_, volume.triangles, decomposition_.octree.box(at->leaf), at->point);
+  if (find_part(point, place)) return place;
+  const std::optional<bool> side = side_in_leaf(mesh_, decomposition_, sides_, *at, point);
   if (side) place.kind = *side ? VolumePlace::inside : VolumePlace::outside;
   return place;
 }

@@ -33,6 +33,12 @@ struct LeafOfPoint {
 };
 std::optional<LeafOfPoint> find_leaf(const Lattice& lattice, const Octree& octree, const Vector3& point);
 
+/// Whether a point in a leaf that the mesh meets is inside according to the mesh: by what of it is nearest,
+/// or where that is a boundary by the first face on the way to the mesh. Absent on the mesh. Cost: O(log
+/// faces), or O(triangles of the leaf).
+std::optional<bool> side_in_leaf(const LatticeMesh& mesh, const Decomposition& decomposition,
+                                 const SideFinder& sides, const LeafOfPoint& at, const Vector3& point);
+
 /// The corners of a free tetrahedron: the base, counter-clockwise seen from outside the cube, and the apex.
 std::array<Vector3, 4> corners_of(const VolumeComplex& complex,
                                   const VolumeComplex::Tetrahedron& tetrahedron);

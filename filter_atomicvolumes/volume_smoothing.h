@@ -20,6 +20,9 @@ struct VolumeSmoothingOptions {
   /// to a half the second patch comes out smoother than the first; near 1 the surface is ruled by suggestions
   /// and has more stairs.
   double suggestion = 0.3;
+  /// What the cut after the suggestions makes small. Where that is the number of faces, a suggestion costs
+  /// this share of a sixth of the cube's faces.
+  CutWeight weight = CutWeight::area;
 };
 
 struct VolumeSmoothingFigures {
@@ -42,9 +45,9 @@ VolumeSmoothingFigures smooth_constrained(const LatticeMesh& mesh, const Decompo
                                           const Progress& progress = Progress());
 
 /// Smooths without constraints, and suggests to each blank cube that the smoothed surface passes through the
-/// side of the surface on which its centre lies: ties for a new cut, ascending by node, with prices in areas
-/// (paper, section 5). `surface` should not be smoothed yet; the new cut's is then smoothed with constraints.
-/// Cost: O(triangles * iterations) and the cubes that the surface meets.
+/// side of the surface on which its centre lies: ties for a new cut, ascending by node, with prices in its
+/// unit (paper, section 5). `surface` should not be smoothed yet; the new cut's is then smoothed with
+/// constraints. Cost: O(triangles * iterations) and the cubes that the surface meets.
 std::vector<NodeTie> suggest_by_springs(const LatticeMesh& mesh, const Decomposition& decomposition,
                                         const VolumeComplex& complex, const LabelledSurface& surface,
                                         const VolumeSmoothingOptions& options,

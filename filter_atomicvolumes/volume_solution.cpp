@@ -165,6 +165,7 @@ void smooth(VolumeSolution& solution, const AtomicVolumesOptions& options,
   VolumeSmoothingOptions smoothing;
   smoothing.iterations = options.smoothing_iterations;
   smoothing.moving_centres = options.moving_centres;
+  smoothing.weight = options.weight;
   smoothing.points = points_in_volumes(solution, constraints);
   if (options.smoothing == VolumeSmoothing::two_pass) {
     std::vector<NodeTie> ties = suggest_by_springs(solution.mesh, solution.decomposition, solution.complex,

@@ -27,6 +27,11 @@ struct VolumeSolution {
   std::vector<std::string> notes;
 };
 
+/// Where the root cube of the i-th division stands, counted from 0.
+inline std::uint64_t seed_of_division(const AtomicVolumesOptions& options, int i) {
+  return options.seed + static_cast<std::uint64_t>(i) * 0x9e3779b97f4a7c15ull;
+}
+
 /// Divides space round the mesh, with the root cube where `seed` puts it, and labels the volumes. Starts
 /// again elsewhere when features coincide. Throws CompletionError beyond the node budget, `Cancelled`.
 /// Deterministic.

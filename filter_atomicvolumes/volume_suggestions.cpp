@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "common/core/closest_point.h"
 #include "filter_atomicvolumes/rigid_cubes.h"
 #include "filter_atomicvolumes/springs.h"
 #include "filter_atomicvolumes/volume_smoothing.h"
@@ -14,21 +15,6 @@ namespace {
 
 using Corners = std::array<Vector3, 3>;
 
-// The point of a triangle that is closest to `p`. Source: Ericson, "Real-Time Collision Detection", 5.1.5.
-Vector3 closest_point(const Corners& t, const Vector3& p) {
-  const Vector3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0], bp = p - t[1], cp = p - t[2];
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
-               d6 = ac.dot(cp);
-  if (d1 <= 0 && d2 <= 0) return t[0];
-  if (d3 >= 0 && d4 <= d3) return t[1];
-  if (d6 >= 0 && d5 <= d6) return t[2];
-  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t[0] + d1 / (d1 - d3) * ab;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t[0] + d2 / (d2 - d6) * ac;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
-  return t[0] + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac;
-}
-
 class Suggester {
  public:
   Suggester(const LatticeMesh& mesh, const Decomposition& decomposition, const VolumeComplex& complex,
@@ -37,6 +23,7 @@ class Suggester {
 
   std::vector<NodeTie> run(const Progress& progress) {
     relax(progress);
+    if (options_.weight == CutWeight::unit) faces_ = measure_faces(mesh_, complex_, options_.weight);
     progress.update(0.5);
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
       if (t % 256 == 0) progress.check();
@@ -59,6 +46,11 @@ class Suggester {
   void see(const Corners& triangle);
   void look(Cell node, const StoredBox& box, const Corners& triangle);
   std::vector<NodeTie> ties() const;
+  // Of a cube's six faces one, as the cut counts it; smaller neighbours divide it.
+  double face_of(Cell node, double side) const {
+    return options_.weight == CutWeight::area ? side * side
+                                              : faces_.of_node[static_cast<std::size_t>(node)] / 6;
+  }
 
   const LatticeMesh& mesh_;
   const Decomposition& decomposition_;
@@ -67,6 +59,7 @@ class Suggester {
   const VolumeSmoothingOptions& options_;
   std::vector<Vector3> positions_;
   std::map<Cell, Sight> sights_;
+  FaceMeasure faces_;  // for the unit weight
 };
 
 void Suggester::relax(const Progress& progress) {
@@ -94,14 +87,15 @@ void Suggester::see(const Corners& triangle) {
 }
 
 void Suggester::look(Cell node, const StoredBox& box, const Corners& t) {
-  const Vector3 centre = 0.5 * (box.low + box.high), away = centre - closest_point(t, centre);
+  const Vector3 centre = 0.5 * (box.low + box.high),
+                away = centre - closest_point(centre, t[0], t[1], t[2]).position;
   const double side = box.high[0] - box.low[0];
   const double distance = away.norm(), height = (t[1] - t[0]).cross(t[2] - t[0]).normalized().dot(away);
   Sight& sight = sights_[node];
   // Of triangles with a common closest point the one that faces the centre most tells the side.
   const bool nearer =
       distance < sight.distance || (distance == sight.distance && std::abs(height) > std::abs(sight.height));
-  if (nearer) sight = {distance, height, options_.suggestion * side * side};
+  if (nearer) sight = {distance, height, options_.suggestion * face_of(node, side)};
 }
 
 std::vector<NodeTie> Suggester::ties() const {

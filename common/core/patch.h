@@ -61,6 +61,9 @@ struct CompletionReport {
       stage_seconds;                                    ///< wall seconds per stage, in the order they ran
   std::vector<std::string> notes;                       ///< anything else the user should know
   std::vector<std::pair<std::string, double>> figures;  ///< what the run came to in numbers, by name
+  /// Faces of the input, by the caller's numbers, ascending, that the new layer lacks; only in modes that say
+  /// so. The input itself has them still.
+  std::vector<Index> removed_faces;
 
   std::size_t count(HoleOutcome outcome) const;
 };

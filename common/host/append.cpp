@@ -112,6 +112,23 @@ void copy_layer(const MeshModel& from, MeshModel& to) {
   to.cm.pfn = from.cm.pfn;
 }
 
+/// Takes faces out of a copy; they are given by their positions in the original.
+void remove_faces(const CMeshO& from, const std::vector<Index>& faces, CMeshO& copy) {
+  if (faces.empty()) return;
+  auto next = faces.begin();
+  std::size_t place = 0;  // in the copy, which lacks the deleted ones
+  for (Index f = 0; f < from.face.size(); ++f) {
+    if (from.face[f].IsD()) continue;
+    if (next != faces.end() && *next == f) {
+      if (copy.face[place].IsS()) --copy.sfn;
+      Allocator::DeleteFace(copy, copy.face[place]);
+      ++next;
+    }
+    ++place;
+  }
+  Allocator::CompactFaceVector(copy);
+}
+
 /// Where each vertex of a layer stands in a copy that leaves out the deleted ones.
 std::vector<std::size_t> positions_in_copy(const CMeshO& mesh) {
   std::vector<std::size_t> positions(mesh.vert.size(), 0);
@@ -140,10 +157,11 @@ Appended append_patch(MeshModel& model, const TriangleMesh& mesh, const Patch& p
 MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, const TriangleMesh& mesh,
                                 const Patch& patch, const QString& name, const AppendOptions& options) {
   refuse_foreign(model, mesh, patch);
-  const PatchAttributes attributes = patch_attributes(model, mesh, patch);
+  const PatchAttributes attributes = patch_attributes(model, mesh, patch, options.left_out);
   MeshModel* copy = document.addNewMesh("", name, false);
   try {
     copy_layer(model, *copy);
+    remove_faces(model.cm, options.left_out, copy->cm);
     append_computed(*copy, patch, attributes, positions_in_copy(model.cm), options);
   } catch (...) {
     document.delMesh(copy);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QString>
+#include <vector>
 
 #include "common/core/mesh.h"
 #include "common/core/patch.h"
@@ -15,6 +16,8 @@ struct AppendOptions {
   /// The new faces become the face selection, as in MeshLab's own Close Holes; otherwise the selection stays
   /// as it is.
   bool select_new_faces = false;
+  /// Positions in `CMeshO::face`, ascending, of faces that a copy lacks. Not for `append_patch`.
+  std::vector<Index> left_out;
 };
 
 /// Where the patch went: it stands at the end of the vertex and of the face list.
@@ -36,8 +39,9 @@ Appended append_patch(MeshModel& model, const TriangleMesh& mesh, const Patch& p
                       const AppendOptions& options = AppendOptions());
 
 /// Adds a layer named `name` that is a complete copy of `model` with the patch appended, makes it the current
-/// layer and leaves `model` as it is. Deleted elements are not copied. Custom attributes of the usual types
-/// (numbers, points, colours) are copied. When it throws, the document is as before.
+/// layer and leaves `model` as it is. Deleted elements are not copied, nor are the faces that the options
+/// leave out; their vertices are. Custom attributes of the usual types (numbers, points, colours) are copied.
+/// When it throws, the document is as before.
 MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, const TriangleMesh& mesh,
                                 const Patch& patch, const QString& name,
                                 const AppendOptions& options = AppendOptions());

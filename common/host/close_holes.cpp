@@ -30,12 +30,20 @@ QString derived_name(const QString& name, const QString& what) {
   return QString("%1 (%2)").arg(QString(name).remove(extension), what);
 }
 
+// Where no hole was closed there is no new layer, and nothing is removed.
+void list_removed(const Snapshot& input, const ClosedHoles& result, CompletionReport& report) {
+  if (!result.removed || result.completion.patch.empty()) return;
+  for (const Index triangle : *result.removed)
+    report.removed_faces.push_back(input.face_of_triangle[triangle]);
+}
+
 void append_result(FilterRun& run, MeshModel& model, const Snapshot& input, const ClosedHoles& result) {
   const Patch& patch = result.completion.patch;
   AppendOptions options;
   options.select_new_faces = run.parameters.boolean("NewFaceSelected");
   const QString name = model.label();
-  if (run.parameters.boolean("AsNewLayer") && !patch.empty())
+  options.left_out = run.report.removed_faces;
+  if ((result.removed || run.parameters.boolean("AsNewLayer")) && !patch.empty())
     append_patch_to_copy(run.document, model, input.mesh, patch, derived_name(name, "closed"), options);
   else
     append_patch(model, input.mesh, patch, options);
@@ -56,6 +64,7 @@ void close_holes(FilterRun& run, const CloseHolesAlgorithm& algorithm) {
   const ClosedHoles result =
       algorithm(input.mesh, input.selection, holes, run.progress.part(0.02, 0.95, "closing holes"));
   run.report = result.completion.report;
+  list_removed(input, result, run.report);
   run.report.stage_seconds.insert(run.report.stage_seconds.begin(), reading.stage_seconds.front());
   run.progress.check();
   watch = Stopwatch();

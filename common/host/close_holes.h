@@ -3,6 +3,7 @@
 
 #include <QString>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/core/hole_selection.h"
@@ -24,6 +25,10 @@ struct ExtraLayer {
 struct ClosedHoles {
   Completion completion;
   std::vector<ExtraLayer> layers;  ///< those without triangles are left out
+  /// Triangles of the snapshot, ascending, that the patch does not go with: the result is then a new layer
+  /// without their faces, whatever the parameters say. An empty list is such a layer too. Absent: the patch
+  /// goes with the mesh as it is.
+  std::optional<std::vector<Index>> removed = std::nullopt;
 };
 
 /// What a filter itself does: everything else is common.
@@ -32,8 +37,9 @@ using CloseHolesAlgorithm =
                               const HoleSelectionOptions& holes, const Progress& progress)>;
 
 /// Takes a snapshot of the current layer, runs the algorithm on it, appends its patch to the layer (or to a
-/// copy in a new layer) and writes to the log what became of each hole. The parameters are those of
-/// `close_holes_parameters`. Nothing is changed before the algorithm has finished.
+/// copy in a new layer, without the faces that the algorithm names) and writes to the log what became of each
+/// hole. The parameters are those of `close_holes_parameters`. Nothing is changed before the algorithm has
+/// finished.
 void close_holes(FilterRun& run, const CloseHolesAlgorithm& algorithm);
 
 }  // namespace host

@@ -9,8 +9,9 @@ namespace meshcomplete {
 namespace host {
 
 /// One line per hole. When there are many, those that were closed are summed up in one line and the list of
-/// the others ends after a hundred lines with a count of the rest. Notes follow, and one line with all
-/// figures. The last line says how many holes were closed.
+/// the others ends after a hundred lines with a count of the rest. Notes follow, one line with the
+/// first hundred faces that a new layer lacks, and one line with all figures. The last line says how many
+/// holes were closed.
 QStringList describe_holes(const CompletionReport& report);
 
 }  // namespace host

@@ -73,8 +73,9 @@ vcg::TexCoord2f texcoord_at(const Eigen::RowVectorXd& row, Eigen::Index column, 
 /// new ones.
 class Interpolation {
  public:
-  Interpolation(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch)
-      : layer_(model.cm), mesh_(mesh), patch_(patch), columns_(model.cm) {
+  Interpolation(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch,
+                const std::vector<Index>& left_out)
+      : layer_(model.cm), mesh_(mesh), patch_(patch), left_out_(left_out), columns_(model.cm) {
     number_vertices();
     find_components();
     if (columns_.face_values()) find_rim_edges();
@@ -115,6 +116,7 @@ class Interpolation {
   const CMeshO& layer_;
   const TriangleMesh& mesh_;
   const Patch& patch_;
+  const std::vector<Index>& left_out_;
   Columns columns_;
   std::vector<Index> rim_;
   std::unordered_map<Index, Eigen::Index> rim_number_;
@@ -156,7 +158,8 @@ void Interpolation::find_rim_edges() {
   for (const Index v : rim_) on_rim[v] = 1;
   const CVertexO* const first = layer_.vert.data();
   for (const CFaceO& face : layer_.face) {
-    if (face.IsD()) continue;
+    const auto place = static_cast<Index>(&face - layer_.face.data());
+    if (face.IsD() || std::binary_search(left_out_.begin(), left_out_.end(), place)) continue;
     for (int corner = 0; corner < 3; ++corner) {
       const auto from = static_cast<Index>(face.cV(corner) - first);
       const auto to = static_cast<Index>(face.cV((corner + 1) % 3) - first);
@@ -302,9 +305,10 @@ PatchAttributes Interpolation::attributes() const {
 
 }  // namespace
 
-PatchAttributes patch_attributes(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch) {
+PatchAttributes patch_attributes(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch,
+                                 const std::vector<Index>& left_out) {
   if (patch.empty()) return {};
-  return Interpolation(model, mesh, patch).attributes();
+  return Interpolation(model, mesh, patch, left_out).attributes();
 }
 
 }  // namespace host

@@ -29,8 +29,10 @@ struct PatchAttributes {
 /// texture coordinates) are first averaged at each rim vertex over the faces of the layer that hold a rim
 /// edge; at a rim edge a new face has exactly the wedge coordinates of the face across, so that the texture
 /// continues without a seam. Where several textures meet at one hole, the one that most of its rim has is
-/// taken. Cost: one pass over the faces when the layer has face values, and the interpolation's.
-PatchAttributes patch_attributes(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch);
+/// taken. Faces at the positions `left_out` in `CMeshO::face`, ascending, tell nothing. Cost: one pass over
+/// the faces when the layer has face values, and the interpolation's.
+PatchAttributes patch_attributes(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch,
+                                 const std::vector<Index>& left_out = {});
 
 }  // namespace host
 }  // namespace meshcomplete

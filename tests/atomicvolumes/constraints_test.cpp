@@ -171,7 +171,7 @@ TEST(Constraints, PointsThatCannotBeToldApartHaveNoEffect) {
   VolumeConstraints constraints;
   constraints.inside = constraints.outside = {{1, 0, 0}};
   const AtomicSolid same = complete_by_cut(mesh, constraints, 1);
-  EXPECT_TRUE(any_note_has(same.notes, "are given as inside and as outside"));
+  EXPECT_TRUE(any_note_has(same.notes, "given as inside and as outside"));
   EXPECT_EQ(same.leaves, plain.leaves);
   EXPECT_DOUBLE_EQ(same.area(), plain.area());
   constraints.outside[0][0] = std::nextafter(1.0, 2.0);  // within a cell of the greatest depth
@@ -187,12 +187,57 @@ TEST(Constraints, WhatTheMeshContradictsIsReported) {
   constraints.inside = {{9, 0, 0}};           // beyond the octree
   constraints.outside = {{0.02, 0, -0.985}};  // just behind the surface, where no blank cube is
   const AtomicSolid solid = complete_by_cut(mesh, constraints, 1, constraints.outside);
-  EXPECT_TRUE(any_note_has(solid.notes, "points given as inside are outside according to the mesh"));
-  EXPECT_TRUE(any_note_has(solid.notes, "points given as outside are inside according to the mesh"));
+  EXPECT_TRUE(any_note_has(
+      solid.notes,
+      "The point given as inside is outside according to the mesh, at (9, 0, 0); it has no effect."));
+  EXPECT_TRUE(any_note_has(solid.notes, "The point given as outside is inside according to the mesh"));
   EXPECT_EQ(solid.labels, std::vector<char>{1});
   constraints.inside = {{0.02, 0, -0.985}};
   constraints.outside = {{9, 0, 0}, {0.02, 0, -1.005}};
   EXPECT_TRUE(complete_by_cut(mesh, constraints, 1).notes.empty());
+}
+
+// A crossed cube can be so large that most of it is far from the faces in it. Nothing is known there but what
+// the mesh says about its own neighbourhood; points win.
+TEST(Constraints, LargeCrossedCubesAreSplitForPointsFarFromTheMesh) {
+  const TriangleMesh mesh = sphere_with_hole();
+  int split = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    const std::size_t leaves = complete_by_cut(mesh, {}, seed).leaves;
+    VolumeConstraints constraints;
+    constraints.inside = {{0.1, 0.8, -0.95}};    // before the mesh by 0.25
+    constraints.outside = {{-0.3, 0.1, -0.65}};  // behind it by as much
+    const AtomicSolid solid =
+        complete_by_cut(mesh, constraints, seed, {constraints.inside[0], constraints.outside[0]});
+    EXPECT_EQ(solid.labels, (std::vector<char>{1, 0}));
+    EXPECT_TRUE(solid.notes.empty()) << solid.notes.front();
+    EXPECT_TRUE(solid.closed);
+    EXPECT_EQ(solid.genus, 0);
+    EXPECT_LT(solid.leaves, leaves + 500);
+    split += solid.leaves > leaves;
+  }
+  EXPECT_GT(split, 0) << "the points were in blank cubes anyway";
+}
+
+// The same in the tetrahedra at a rim vertex that touch a face.
+TEST(Constraints, LargeHoleCubesAreSplitForPointsFarFromTheMesh) {
+  const TriangleMesh mesh = sphere_with_hole(2, 0.6);
+  const MeshTopology topology = build_topology(mesh);
+  int split = 0;
+  for (std::size_t i = 0; i < topology.boundary_half_edges.size(); i += 2) {
+    const Index h = topology.boundary_half_edges[i];
+    const Vector3 rim = mesh.vertices[mesh.triangles[h / 3][h % 3]];
+    const Vector3 down = Vector3(rim[0], rim[1], -0.4).normalized();
+    VolumeConstraints constraints;
+    constraints.outside = {0.93 * (rim + 0.02 * down)};
+    const std::size_t leaves = complete_by_cut(mesh, {}, 2).leaves;
+    const AtomicSolid solid = complete_by_cut(mesh, constraints, 2, constraints.outside);
+    EXPECT_EQ(solid.labels, std::vector<char>{0});
+    EXPECT_TRUE(solid.notes.empty()) << solid.notes.front();
+    EXPECT_TRUE(solid.closed);
+    split += solid.leaves > leaves;
+  }
+  EXPECT_GT(split, 0);
 }
 
 TEST(Constraints, PointsThatAreNotFiniteAreLeftOut) {
@@ -239,7 +284,7 @@ TEST(Constraints, InsidePointsWinAgainstViews) {
   const AtomicSolid solid = complete_by_cut(lumps(), constraints, 1, points);
   EXPECT_EQ(solid.labels, (std::vector<char>{1, 0, 0}));
   EXPECT_GT(solid.leaves, carved.leaves);
-  EXPECT_TRUE(any_note_has(solid.notes, "were not carved"));
+  EXPECT_TRUE(any_note_has(solid.notes, "not carved"));
 }
 
 TEST(Constraints, HintsHaveAPrice) {

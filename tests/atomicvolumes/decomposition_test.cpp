@@ -57,14 +57,6 @@ Verdict judge(const LatticeMesh& mesh, const LatticeBox& box) {
   return verdict;
 }
 
-bool hold_each_other(const LatticeBox& box, const std::vector<LatticePoint>& inside,
-                     const std::vector<LatticePoint>& outside) {
-  const auto any = [&](const std::vector<LatticePoint>& points) {
-    return std::any_of(points.begin(), points.end(), [&](const LatticePoint& p) { return box.contains(p); });
-  };
-  return any(inside) && any(outside);
-}
-
 std::map<VolumeKind, int> expect_definitions(const LatticeMesh& mesh, const DecompositionOptions& options,
                                              const Decomposition& d) {
   std::map<VolumeKind, int> kinds;
@@ -73,8 +65,7 @@ std::map<VolumeKind, int> expect_definitions(const LatticeMesh& mesh, const Deco
     const LatticeBox box = d.octree.box(cube);
     const Verdict verdict = judge(mesh, box);
     const bool last = d.octree[cube].depth >= options.max_depth;
-    const bool must_split =
-        !last && (!verdict.trivial || hold_each_other(box, options.inside, options.outside));
+    const bool must_split = !last && !verdict.trivial;
     EXPECT_EQ(!d.octree.is_leaf(cube), must_split) << "cubes are split just where they must be";
     if (!d.octree.is_leaf(cube) || must_split) continue;
     const Volume& volume = d.volumes[cube];
@@ -111,22 +102,6 @@ TEST(Decomposition, AtTheGreatestDepthWhatIsNotTrivialIsUnresolved) {
     const auto kinds = expect_definitions(placed.lattice_mesh, options, d);
     EXPECT_TRUE(kinds.count(VolumeKind::unresolved));
   }
-}
-
-// Two pairs of points, one pair close together in a blank part of space.
-TEST(Decomposition, CubesThatHoldAnInsideAndAnOutsidePointAreSplit) {
-  const PlacedMesh placed(test::sphere_with_hole(2, 0.6), 4);
-  const LatticeMesh& mesh = placed.lattice_mesh;
-  DecompositionOptions options;
-  const LatticePoint p = mesh.lattice.snap(Vector3(0.01, 0.02, 0.03));
-  options.inside = {p, mesh.lattice.snap(Vector3(0.9, 0.3, 0))};
-  options.outside = {{p[0] + 1000000, p[1], p[2]}, mesh.lattice.snap(Vector3(0.92, 0.31, 0.01))};
-  const Decomposition d = decompose(mesh, options);
-  expect_definitions(mesh, options, d);
-  EXPECT_GT(d.octree.size(), decompose(mesh, {}).octree.size());
-  EXPECT_NE(d.octree.find(options.inside[0]), d.octree.find(options.outside[0]));
-  options.max_depth = 3;
-  expect_definitions(mesh, options, decompose(mesh, options));
 }
 
 // Any leaves may be split once more; what comes of them is as trivial as before.

@@ -186,6 +186,25 @@ TEST(Labelling, TiesMoveTheCut) {
                Cancelled);
 }
 
+// Going against a hint never costs more than the hint, also where the cut counts faces.
+TEST(Labelling, PricesNeedNotBeWholeFaces) {
+  const PlacedMesh placed(test::sphere_with_hole(2, 0.6), 3);
+  const auto division = test::divide(placed);
+  ASSERT_TRUE(division);
+  const auto cut = [&](const std::vector<NodeTie>& ties) {
+    return cut_complex(placed.lattice_mesh, division->complex, CutWeight::unit, ties);
+  };
+  const Labelling plain = cut({});
+  EXPECT_EQ(plain.weight, std::round(plain.weight));
+  std::size_t dearer = 0;
+  for (std::size_t node = 0; node < division->complex.nodes; node += 17) {
+    const Labelling hinted = cut({{static_cast<Cell>(node), !plain.inside[node], 0.25}});
+    EXPECT_LE(hinted.weight, plain.weight + 0.25);
+    dearer += hinted.weight > plain.weight;
+  }
+  EXPECT_GT(dearer, 0u);
+}
+
 TEST(Labelling, KnownCellsKeepTheirSides) {
   Labelling labelling;
   labelling.inside = {1, 0};

@@ -336,7 +336,9 @@ TEST(VolumeWarp, HoldsWhereVerticesAreMovedAndPutBack) {
     std::vector<Index> some;
     for (Index v = 0; v < count; ++v) {
       moved += warp.moved(v);
-      if (warp.moved(v)) EXPECT_TRUE(warp.holds_at(v));
+      if (warp.moved(v)) {
+        EXPECT_TRUE(warp.holds_at(v));
+      }
       if (warp.moved(v) && test::uniform(random) < 0.2) some.push_back(v);
     }
     const std::vector<Index> back = warp.put_back(some);
@@ -344,7 +346,9 @@ TEST(VolumeWarp, HoldsWhereVerticesAreMovedAndPutBack) {
     more += back.size() - some.size();
     for (Index v : back) EXPECT_EQ(warp.position(v), warp.start(v));
     for (Index v = 0; v < count; ++v)
-      if (warp.moved(v)) EXPECT_TRUE(warp.holds_at(v));
+      if (warp.moved(v)) {
+        EXPECT_TRUE(warp.holds_at(v));
+      }
   }
   EXPECT_GT(moved, 100u);
   EXPECT_GT(more, 0u);
@@ -394,6 +398,28 @@ TEST(VolumeSmoothing, SuggestsTheSideOfTheSmoothedSurface) {
         EXPECT_EQ(tie.inside, height < 0);
       }
   EXPECT_GT(sure, 3u);
+}
+
+// A cut that counts faces needs prices in faces, whatever the size of the mesh.
+TEST(VolumeSmoothing, SuggestionsCostFacesWhereTheCutCountsFaces) {
+  for (double scale : {1.0, 1e-3}) {
+    const Cut cut(test::scaled(test::sphere_with_hole(3, 0.9), scale), 1);
+    ASSERT_FALSE(cut.surface.triangles.empty());
+    const VolumeComplex& complex = cut.division.complex;
+    std::vector<double> faces(complex.nodes, 0);
+    const auto count = [&](Cell cell) {
+      if (cell >= 0) faces[static_cast<std::size_t>(cell)] += 1;
+    };
+    for (const VolumeFace& face : complex.faces) count(face.behind), count(face.before);
+    for (const VolumeSquare& square : complex.whole_squares) count(square.behind), count(square.before);
+    VolumeSmoothingOptions options;
+    options.weight = CutWeight::unit;
+    const std::vector<NodeTie> ties = suggest_by_springs(cut.placed.lattice_mesh, cut.division.decomposition,
+                                                         complex, cut.surface, options);
+    ASSERT_FALSE(ties.empty());
+    for (const NodeTie& tie : ties)
+      EXPECT_DOUBLE_EQ(tie.price, options.suggestion * faces[static_cast<std::size_t>(tie.node)] / 6);
+  }
 }
 
 TEST(VolumeSmoothing, ChangesNothingWithoutIterations) {

@@ -8,6 +8,7 @@
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "common/host/hole_log.h"
+#include "common/host/snapshot.h"
 #include "tests/host/fake_plugin.h"
 #include "tests/host/test_documents.h"
 #include "tests/support/meshes.h"
@@ -126,6 +127,69 @@ TEST_F(CloseHolesTest, ResultAsNewLayer) {
   ASSERT_EQ(document.meshList.size(), 2);
   EXPECT_EQ(document.mm(), document.meshList.at(1));
   EXPECT_EQ(document.mm()->label(), "ball 1.5 (closed)");
+}
+
+/// Takes the faces with these places in the snapshot out, and closes what is then open.
+CloseHolesAlgorithm without_triangles(std::vector<Index> removed) {
+  return [removed](const TriangleMesh& mesh, const MeshSelection& selection,
+                   const HoleSelectionOptions& options, const Progress&) {
+    TriangleMesh rest = mesh;
+    for (auto t = removed.rbegin(); t != removed.rend(); ++t)
+      rest.triangles.erase(rest.triangles.begin() + *t);
+    ClosedHoles result = fill_with_fans(rest, selection, options);
+    result.removed = removed;
+    return result;
+  };
+}
+
+TEST_F(CloseHolesTest, RemovedFacesAreMissingInANewLayerOnly) {
+  vcg::tri::Allocator<CMeshO>::DeleteFace(model.cm, model.cm.face[3]);
+  const std::string before = test::layer_state(model);
+  const std::vector<std::string> faces = test::face_states(model);
+  const std::vector<std::string> vertices = test::vertex_states(model);
+  FakePlugin plugin({close_holes_filter(without_triangles({1, 7, 8}))});
+  ASSERT_TRUE(plugin.run(document, 0, [](RichParameterList& list) { set(list, "NewFaceSelected", false); }))
+      << qPrintable(plugin.message());
+  EXPECT_TRUE(test::layer_state(model) == before);
+  ASSERT_EQ(document.meshList.size(), 2);
+  const MeshModel& copy = *document.mm();
+  // Faces behind the deleted one have their places in the layer, not in the snapshot.
+  EXPECT_EQ(plugin.last_report().removed_faces, (std::vector<Index>{1, 8, 9}));
+  EXPECT_TRUE(plugin.log().contains("The new layer lacks 3 faces of the input, counted from 0: 1, 8, 9"));
+  std::vector<std::string> kept;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (f != 1 && f != 3 && f != 8 && f != 9) kept.push_back(faces[f]);
+  std::vector<std::string> after = test::face_states(copy);
+  EXPECT_EQ(static_cast<std::size_t>(copy.cm.fn), copy.cm.face.size());
+  ASSERT_GT(after.size(), kept.size());
+  after.resize(kept.size());
+  EXPECT_TRUE(after == kept);
+  std::vector<std::string> vertices_after = test::vertex_states(copy);
+  vertices_after.resize(vertices.size());
+  EXPECT_TRUE(vertices_after == vertices);
+  EXPECT_TRUE(test::fans(snapshot(copy).mesh).triangles.empty()) << "something is still open";
+}
+
+TEST_F(CloseHolesTest, ALayerOfItsOwnAlsoWhenNothingHadToBeRemoved) {
+  FakePlugin plugin({close_holes_filter(without_triangles({}))});
+  ASSERT_TRUE(plugin.run(document));
+  EXPECT_EQ(document.meshList.size(), 2);
+  EXPECT_TRUE(plugin.last_report().removed_faces.empty());
+  EXPECT_FALSE(plugin.log().contains("lacks"));
+}
+
+TEST_F(CloseHolesTest, WhenNothingWasClosedNothingIsRemoved) {
+  const std::string before = test::document_state(document);
+  FakePlugin plugin({close_holes_filter(
+      [](const TriangleMesh& mesh, const MeshSelection&, const HoleSelectionOptions&, const Progress&) {
+        ClosedHoles result;
+        result.completion.patch.input_vertices = static_cast<Index>(mesh.vertices.size());
+        result.removed = std::vector<Index>{1, 2};
+        return result;
+      })});
+  ASSERT_TRUE(plugin.run(document));
+  EXPECT_TRUE(plugin.last_report().removed_faces.empty());
+  EXPECT_TRUE(test::document_state(document) == before);
 }
 
 TEST_F(CloseHolesTest, WhenNothingWasClosedThereIsNoNewLayer) {

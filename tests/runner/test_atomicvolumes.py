@@ -152,6 +152,50 @@ def outer_half_torus(around=48, across=16, small=0.6):
     return vertices, faces
 
 
+class DepthLimit(Case):
+    """One rim edge is so short that cubes at the limit hold both of its ends."""
+
+    def setUp(self):
+        super().setUp()
+        vertices, faces = sphere(rings=24, segments=32, hole=False)
+        self.write("in.ply", vertices, without(vertices, faces, [(0.7, 1.1)]))
+        before = Ply(self.path("in.ply"))
+        rim = max(range(len(before.points)), key=lambda v: before.points[v][2])
+        near = max((v for v in range(len(before.points)) if v != rim),
+                   key=lambda v: (before.points[v][2] > before.points[rim][2] - 1e-3,
+                                  -math.dist(before.points[v], before.points[rim])))
+        points = list(before.points)
+        points[near] = tuple(a + 1e-4 * (b - a) for a, b in zip(points[rim], points[near]))
+        write_ply(self.path("in.ply"), points, before.triangles)
+        self.before = Ply(self.path("in.ply"))
+
+    def test_the_faces_there_are_removed_in_a_new_layer(self):
+        self.check(0, "-i", "in.ply", "-f", FILTER, "-p", "MaxDepth=8", "DepthLimit=Remove", "-f", CHECK, "-o", "out.ply",
+                   "--report", "report.json")
+        after = Ply(self.path("out.ply"))
+        removed = self.read_report()["filters"][0]["removed_faces"]
+        self.assertTrue(0 < len(removed) < 40, removed)
+        kept = [face for number, face in enumerate(self.before.triangles) if number not in removed]
+        self.assertEqual(after.triangles[:len(kept)], kept)
+        self.assertEqual(bits(after.points[:len(self.before.points)]), bits(self.before.points))
+
+    def test_the_log_lists_them(self):
+        self.close("MaxDepth=8", "DepthLimit=Remove")
+        self.assertIn("Watertight: yes", self.log)
+        removed = self.read_report()["filters"][0]["removed_faces"]
+        self.assertIn(f"lacks {len(removed)} faces of the input, counted from 0: " + ", ".join(map(str, removed)), self.log)
+
+    def test_by_default_nothing_is_removed(self):
+        after = self.close("MaxDepth=8")
+        self.assertIn("Watertight: yes", self.log)
+        self.assertEqual(after.triangles[:len(self.before.triangles)], self.before.triangles)
+        self.assertEqual(self.read_report()["filters"][0]["removed_faces"], [])
+
+    def test_messages(self):
+        self.assertIn("set MaxDepth", self.refused(1, "DepthLimit=Remove"))
+        self.assertIn("MaxDepth is too small", self.refused(1, "DepthLimit=Remove", "MaxDepth=3"))
+
+
 class OtherLayers(Case):
     """The paper's second figure: the outer half of a torus becomes a disk-like solid, or with points a torus."""
 
@@ -270,7 +314,7 @@ class Messages(Case):
 
     def test_describes_every_parameter(self):
         text = self.check(0, "--describe", FILTER).stdout
-        for name in ("Selected", "AsNewLayer", "MaxDepth", "InsideLayer", "SymmetryDirection", "Fairing", "EdgeLength"):
+        for name in ("Selected", "AsNewLayer", "MaxDepth", "DepthLimit", "InsideLayer", "SymmetryDirection", "Fairing", "EdgeLength"):
             self.assertIn(f"\n  {name}\n", text)
         self.assertIn("Joshua Podolak", text)
 

@@ -24,8 +24,8 @@ FILTERS = {
         ("RichInt", "Restarts", "100"), ("RichInt", "Seed", "1"), ("RichAbsPerc", "EdgeLength", "0"),
         ("RichBool", "UnfoldedLayer", "false")],
     "Close Holes: Atomic Volumes": CLOSE_HOLES + [
-        ("RichInt", "MaxDepth", "0"), ("RichInt", "NodeBudget", "5000000"), ("RichEnum", "Weight", "0"),
-        ("RichInt", "Shifts", "3"), ("RichInt", "Seed", "1"), ("RichEnum", "InsideLayer", "0"),
+        ("RichInt", "MaxDepth", "0"), ("RichEnum", "DepthLimit", "0"), ("RichInt", "NodeBudget", "5000000"),
+        ("RichEnum", "Weight", "0"), ("RichInt", "Shifts", "3"), ("RichInt", "Seed", "1"), ("RichEnum", "InsideLayer", "0"),
         ("RichEnum", "OutsideLayer", "0"), ("RichEnum", "HintInsideLayer", "0"), ("RichEnum", "HintOutsideLayer", "0"),
         ("RichFloat", "HintPrice", "0.01"), ("RichBool", "CarveLayers", "false"), ("RichEnum", "Symmetry", "0"),
         ("RichPoint3f", "SymmetryPoint", "0 0 0"), ("RichPoint3f", "SymmetryDirection", "1 0 0"),

@@ -54,6 +54,8 @@ QJsonObject filter_as_json(const FilterRecord& filter) {
   QJsonObject figures;
   for (const auto& figure : filter.report.figures)
     figures.insert(QString::fromStdString(figure.first), number(figure.second));
+  QJsonArray removed;
+  for (const Index face : filter.report.removed_faces) removed.append(number(std::size_t{face}));
   return {{"name", filter.name},
           {"parameters", parameters},
           {"done", filter.done},
@@ -61,6 +63,7 @@ QJsonObject filter_as_json(const FilterRecord& filter) {
           {"seconds", number(filter.seconds)},
           {"notes", notes},
           {"figures", figures},
+          {"removed_faces", removed},
           {"log", QJsonArray::fromStringList(filter.log)}};
 }
 

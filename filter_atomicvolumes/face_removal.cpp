@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "common/core/boundary_loops.h"
+#include "common/core/error.h"
+#include "filter_atomicvolumes/hole_targets.h"
+#include "filter_atomicvolumes/offending_faces.h"
+#include "filter_atomicvolumes/volume_solution.h"
+
+namespace meshcomplete {
+namespace {
+
+constexpr const char* stage = "removing faces";
+
+// Where removing comes to an end at all it takes a few rounds; where edges are shorter than the smallest
+// cubes every round lays bare a rim as bad as the last.
+constexpr int most_rounds = 24;
+
+// A mesh that loses more of its faces than this is not completed but made anew.
+constexpr double most_removed = 0.25;
+
+// One division of space, and the mesh as far as it is left.
+class Remover {
+ public:
+  Remover(const TriangleMesh& mesh, const MeshSelection& selection, const AtomicVolumesOptions& options,
+          std::uint64_t seed)
+      : options_(options) {
+    removal_.mesh = mesh;
+    removal_.selection = selection;
+    removal_.seed = seed;
+    number_.resize(mesh.triangles.size());
+    for (Index t = 0; t < number_.size(); ++t) number_[t] = t;
+  }
+
+  /// Absent when there is no end, or not before as many faces as `limit` are gone.
+  std::optional<FaceRemoval> run(std::size_t limit, const Progress& progress);
+
+ private:
+  std::vector<char> targeted_rims(const MeshTopology& topology, const Progress& progress) const;
+  std::vector<Index> offending(const Progress& progress) const;
+  void remove(const std::vector<Index>& faces);
+
+  const AtomicVolumesOptions& options_;
+  FaceRemoval removal_;
+  std::vector<Index> number_;  // of each face that is left, in the whole mesh
+};
+
+// Marks the half-edges of the loops that are to be closed; empty when there are none.
+std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Progress& progress) const {
+  const TriangleMesh& mesh = removal_.mesh;
+  const std::vector<BoundaryLoop> loops = trace_boundary_loops(mesh, topology, progress);
+  std::vector<HoleReport> holes = select_holes(mesh, loops, removal_.selection, options_.holes);
+  target_islands(loops, holes);
+  std::vector<char> rims;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!is_targeted(holes[i])) continue;
+    rims.resize(3 * mesh.triangles.size(), 0);
+    const std::vector<Index>& vertices = loops[i].vertices;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      // The loop runs against the face.
+      const Index t = loops[i].faces[k], origin = vertices[(k + 1) % vertices.size()];
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        if (mesh.triangles[t][h % 3] == origin) rims[h] = 1;
+    }
+  }
+  return rims;
+}
+
+std::vector<Index> Remover::offending(const Progress& progress) const {
+  const TriangleMesh& mesh = removal_.mesh;
+  const MeshTopology topology = build_topology(mesh, progress);
+  const std::vector<char> rims = targeted_rims(topology, progress);
+  if (rims.empty()) return {};
+  const InputNeighbourhood neighbourhood(mesh);
+  const PreparedConstraints constraints(mesh, topology, neighbourhood, options_.constraints, progress);
+  const VolumeSolution solution =
+      solve_volumes(mesh, topology, neighbourhood, options_, constraints, removal_.seed, progress);
+  return offending_faces(solution.mesh, solution.decomposition, rims);
+}
+
+// Vertices of faces that go are marked in the selection, so that a hole that was asked for stays so.
+void Remover::remove(const std::vector<Index>& faces) {
+  TriangleMesh& mesh = removal_.mesh;
+  MeshSelection& selection = removal_.selection;
+  std::vector<Triangle> triangles;
+  std::vector<Index> number;
+  std::vector<char> selected;
+  if (options_.holes.selected_only) selection.vertices.resize(mesh.vertices.size(), 0);
+  auto next = faces.begin();
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    if (next != faces.end() && *next == t) {
+      ++next;
+      removal_.faces.push_back(number_[t]);
+      if (options_.holes.selected_only)
+        for (Index v : mesh.triangles[t]) selection.vertices[v] = 1;
+      continue;
+    }
+    triangles.push_back(mesh.triangles[t]);
+    number.push_back(number_[t]);
+    if (!selection.faces.empty()) selected.push_back(selection.faces[t]);
+  }
+  mesh.triangles = std::move(triangles);
+  number_ = std::move(number);
+  selection.faces = std::move(selected);
+}
+
+std::optional<FaceRemoval> Remover::run(std::size_t limit, const Progress& progress) {
+  for (;; ++removal_.rounds) {
+    const std::vector<Index> faces = offending(progress.part(0, 0, stage));
+    if (faces.empty()) {
+      std::sort(removal_.faces.begin(), removal_.faces.end());
+      return std::move(removal_);
+    }
+    if (removal_.rounds == most_rounds || removal_.faces.size() + faces.size() >= limit) return std::nullopt;
+    remove(faces);
+    progress.update((removal_.rounds + 1.0) / most_rounds);
+  }
+}
+
+}  // namespace
+
+FaceRemoval remove_offending_faces(const TriangleMesh& mesh, const MeshSelection& selection,
+                                   const AtomicVolumesOptions& options, const Progress& progress) {
+  check_options(options);
+  if (!options.max_depth)
+    throw CompletionError(stage,
+                          "Faces are removed at the depth limit only, and there is none: set MaxDepth to a "
+                          "number between 3 and 30.");
+  const auto most = static_cast<std::size_t>(most_removed * static_cast<double>(mesh.triangles.size())) + 1;
+  std::optional<FaceRemoval> best;
+  for (int i = 0; i < options.shifts && !(best && best->faces.empty()); ++i) {
+    const double from = static_cast<double>(i) / options.shifts, to = (i + 1.0) / options.shifts;
+    Remover remover(mesh, selection, options, seed_of_division(options, i));
+    std::optional<FaceRemoval> one =
+        remover.run(best ? best->faces.size() : most, progress.part(from, to, stage));
+    if (one) best = std::move(one);
+  }
+  if (!best)
+    throw CompletionError(stage,
+                          "However many faces are removed, those that come to lie at the rims are in the way "
+                          "too (given up after " +
+                              std::to_string(most_rounds) +
+                              " rounds, or a quarter of the mesh): MaxDepth is too small for edges as short "
+                              "as these. Raise it, or choose to cut the cubes at the depth limit.");
+  progress.update(1);
+  return std::move(*best);
+}
+
+ReducedCompletion fill_without_offending_faces(const TriangleMesh& mesh, const MeshSelection& selection,
+                                               const AtomicVolumesOptions& options,
+                                               const Progress& progress) {
+  FaceRemoval removal = remove_offending_faces(mesh, selection, options, progress.part(0, 0.5, stage));
+  AtomicVolumesOptions rest = options;
+  rest.seed = removal.seed;
+  rest.shifts = 1;
+  return {
+      fill_by_atomic_volumes(removal.mesh, removal.selection, rest, progress.part(0.5, 1, "closing holes")),
+      std::move(removal.faces)};
+}
+
+}  // namespace meshcomplete
