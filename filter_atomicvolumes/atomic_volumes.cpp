@@ -1,41 +1,50 @@
 #include "filter_atomicvolumes/atomic_volumes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <exception>
+#include <iterator>
 #include <map>
-#include <mutex>
-#include <numeric>
+#include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
+#include <tuple>
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
-#include "common/core/triangle_intersection.h"
 #include "filter_atomicvolumes/bubbles.h"
-#include "filter_atomicvolumes/finishing.h"
+#include "filter_atomicvolumes/divisible_mesh.h"
 #include "filter_atomicvolumes/hole_targets.h"
-#include "filter_atomicvolumes/rim_patch.h"
+#include "filter_atomicvolumes/patch_pieces.h"
+#include "filter_atomicvolumes/piece_finishing.h"
 #include "filter_atomicvolumes/sheets.h"
 #include "filter_atomicvolumes/volume_solution.h"
 
 namespace meshcomplete {
 namespace {
 
-using Corners = std::array<Vector3, 3>;
-
 void require(bool condition, const char* message) {
   if (!condition) throw CompletionError("reading the parameters", message);
 }
 
-// Rounds in which patches that meet others are left as the faces of the volumes.
-constexpr int most_separations = 3;
+// Octrees more that are tried for holes that the best one left open.
+constexpr int most_retries = 2;
+
+std::string describe(Sheet::Flaw flaw) {
+  switch (flaw) {
+    case Sheet::Flaw::none:
+      break;
+    case Sheet::Flaw::open:
+      return "space round this rim could not be divided: faces touch or intersect each other there, or "
+             "MaxDepth is too small";
+    case Sheet::Flaw::joins_vertices:
+      return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
+             "'Merge Close Vertices' first";
+  }
+  return "";
+}
 
 // Wall seconds between the ends of stages.
 class StageClock {
@@ -52,16 +61,6 @@ class StageClock {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// A piece of the patch with the loops that it closes.
-struct Piece {
-  Sheet sheet;
-  std::vector<std::size_t> loops;  // ascending
-  bool wanted = false;
-  std::optional<RimPatch> rough;  // faces of the volumes, joined to the mesh
-  Patch patch;
-  std::string route, defect;
-};
-
 class Run {
  public:
   Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
@@ -69,53 +68,103 @@ class Run {
       : mesh_(mesh),
         topology_(topology),
         loops_(loops),
+        loop_numbers_(mesh, loops),
         options_(options),
-        neighbourhood_(mesh),
+        input_(mesh),
         report_(report) {}
 
   bool anything_to_do() const { return std::any_of(report_.holes.begin(), report_.holes.end(), is_targeted); }
-  VolumeSolution solve(const Progress& progress) const;
-  void take_pieces(const LabelledSurface& surface);
-  void finish_pieces(const Progress& progress);
-  void separate(const Progress& progress);
+  AtomicVolumesFigures close(const Progress& progress);
   AtomicVolumesResult result(CompletionReport report);
 
  private:
   bool companion(std::size_t loop) const;
-  std::vector<std::vector<std::size_t>> groups() const;
-  void decide(const std::vector<std::size_t>& pieces, std::map<std::size_t, std::string>& reasons);
-  FinishingOptions finishing() const { return {options_.remesh, options_.fairing, options_.edge_length}; }
-  void prepare_piece(Piece& piece, const Progress& progress) const;
-  void finish_piece(Piece& piece, const FinishingOptions& finishing, const std::vector<Corners>& obstacles,
-                    const Progress& progress) const;
-  std::vector<std::size_t> pieces_in_conflict(bool later_only) const;
-  std::vector<Corners> obstacles_of(std::size_t piece) const;
+  void refuse_sewn_loops();
+  /// What space is divided by.
+  const TriangleMesh& divided_mesh() const { return divisible_ ? divisible_->mesh : mesh_; }
+  const MeshTopology& divided_topology() const { return divisible_ ? divisible_->topology : topology_; }
+  const InputNeighbourhood& divided() const { return divisible_ ? divisible_->neighbourhood : input_; }
+  VolumeSolution solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const;
+  std::vector<Sheet> sheets_of(const LabelledSurface& surface) const;
+  std::vector<PatchPiece> pieces_of(const LabelledSurface& surface) const;
+  std::size_t flawed_edges(const VolumeSolution& solution) const;
+  VolumeSolution best_solution(const PreparedConstraints& constraints, const Progress& progress) const;
+  void take_pieces(std::vector<PatchPiece> pieces);
+  std::string obstacle(const std::vector<std::size_t>& loops) const;
+  std::vector<char> left_open() const;
+  std::size_t replace(std::vector<PatchPiece> fresh, const std::vector<char>& open);
+  bool try_others(const PreparedConstraints& constraints, const PieceFinisher& finisher,
+                  const Progress& progress);
 
   const TriangleMesh& mesh_;
   const MeshTopology& topology_;
   const std::vector<BoundaryLoop>& loops_;
+  const LoopNumbers loop_numbers_;
   const AtomicVolumesOptions& options_;
-  const InputNeighbourhood neighbourhood_;
+  const InputNeighbourhood input_;
+  std::unique_ptr<DivisibleMesh> divisible_;  // null: space is divided by the mesh itself
   CompletionReport& report_;
-  std::vector<Piece> pieces_;
+  std::vector<PatchPiece> pieces_;
 };
 
-VolumeSolution Run::solve(const Progress& progress) const {
-  const PreparedConstraints constraints(mesh_, topology_, neighbourhood_, options_.constraints,
-                                        progress.part(0, 0, ""));
+// Rims whose edges lie on each other have nothing between them that a patch could fill.
+void Run::refuse_sewn_loops() {
+  if (!divisible_ || !divisible_->merged) return;
+  for (std::size_t i = 0; i < loops_.size(); ++i)
+    for (std::size_t k = 0; k < loops_[i].faces.size() && is_targeted(report_.holes[i]); ++k) {
+      const Index face = loops_[i].faces[k], next = loops_[i].vertices[(k + 1) % loops_[i].vertices.size()];
+      const Triangle& t = mesh_.triangles[face];
+      const Index corner = static_cast<Index>(std::find(t.begin(), t.end(), next) - t.begin());
+      const Index opposite = divisible_->topology.opposite[3 * face + corner];
+      if (opposite != MeshTopology::boundary)
+        report_.holes[i].reason = "edges of this rim lie on each other; apply 'Merge Close Vertices' first";
+    }
+}
+
+VolumeSolution Run::solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const {
+  return solve_volumes(divided_mesh(), divided_topology(), divided(), options_, constraints,
+                       seed_of_division(options_, shift), progress);
+}
+
+std::vector<Sheet> Run::sheets_of(const LabelledSurface& surface) const {
+  return split_into_sheets(divided_mesh(), divided_topology(), surface, mesh_);
+}
+
+std::vector<PatchPiece> Run::pieces_of(const LabelledSurface& surface) const {
+  return make_pieces(sheets_of(surface), topology_, loop_numbers_);
+}
+
+// How many edges of rims to be closed have a patch that cannot be used.
+std::size_t Run::flawed_edges(const VolumeSolution& solution) const {
+  if (!divisible_ &&
+      std::none_of(solution.decomposition.volumes.begin(), solution.decomposition.volumes.end(),
+                   [](const Volume& v) { return v.kind == VolumeKind::unresolved; }))
+    return 0;
+  const std::vector<PatchPiece> pieces = pieces_of(solution.surface);
+  std::size_t edges = 0;
+  for (const std::vector<std::size_t>& group : group_by_loops(pieces)) {
+    if (flaw_of(pieces, group, loops_) == Sheet::Flaw::none) continue;
+    for (std::size_t loop : loops_of(pieces, group))
+      if (is_targeted(report_.holes[loop])) edges += loops_[loop].faces.size();
+  }
+  return edges;
+}
+
+// Of several octrees that whose patch can be used for most holes, and of these that with the patch of least
+// area.
+VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const Progress& progress) const {
   std::optional<VolumeSolution> best;
+  std::size_t least = 0;
   for (int shift = 0; shift < options_.shifts; ++shift) {
     const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
-    VolumeSolution one =
-        solve_volumes(mesh_, topology_, neighbourhood_, options_, constraints,
-                      seed_of_division(options_, shift), progress.part(from, to, "dividing space"));
-    if (!best || one.labelling.weight < best->labelling.weight) {
-      best.reset();
-      best.emplace(std::move(one));
-    }
+    VolumeSolution one = solve(shift, constraints, progress.part(from, to, "dividing space"));
+    const std::size_t flawed = options_.shifts > 1 ? flawed_edges(one) : 0;
+    if (best && std::tie(least, best->labelling.weight) <= std::tie(flawed, one.labelling.weight)) continue;
+    least = flawed;
+    best.reset();
+    best.emplace(std::move(one));
   }
   smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
-  best->notes.insert(best->notes.begin(), constraints.notes().begin(), constraints.notes().end());
   return std::move(*best);
 }
 
@@ -126,203 +175,145 @@ bool Run::companion(std::size_t loop) const {
          report_.holes[loop].reason == describe(LoopDefect::isolated_triangle);
 }
 
-void Run::take_pieces(const LabelledSurface& surface) {
-  std::unordered_map<std::uint64_t, std::size_t> loop_of;  // by face and vertex where its edge begins
-  for (std::size_t i = 0; i < loops_.size(); ++i)
-    for (std::size_t k = 0; k < loops_[i].faces.size(); ++k)
-      loop_of[static_cast<std::uint64_t>(loops_[i].faces[k]) << 32 |
-              loops_[i].vertices[(k + 1) % loops_[i].vertices.size()]] = i;
-  std::vector<Sheet> sheets = split_into_sheets(mesh_, topology_, surface);
-  for (std::string& note : describe_bubbles(sheets, options_.constraints))
-    report_.notes.push_back(std::move(note));
-  for (Sheet& sheet : sheets) {
-    Piece piece;
-    for (Index h : sheet.closes) {
-      const auto found =
-          loop_of.find(static_cast<std::uint64_t>(h / 3) << 32 | mesh_.triangles[h / 3][h % 3]);
-      if (found != loop_of.end()) piece.loops.push_back(found->second);
-    }
-    std::sort(piece.loops.begin(), piece.loops.end());
-    piece.loops.erase(std::unique(piece.loops.begin(), piece.loops.end()), piece.loops.end());
-    piece.sheet = std::move(sheet);
-    // Pieces without a rim are bubbles.
-    if (!piece.loops.empty()) pieces_.push_back(std::move(piece));
+// Why a group with these loops is not to be closed; empty when it is.
+std::string Run::obstacle(const std::vector<std::size_t>& loops) const {
+  for (std::size_t loop : loops) {
+    const HoleReport& hole = report_.holes[loop];
+    if (is_targeted(hole) || companion(loop)) continue;
+    return hole.outcome == HoleOutcome::skipped
+               ? "one patch closes this hole and another that is to stay open (" + hole.reason + ")"
+               : "one patch closes this hole and another that cannot be closed (" + hole.reason + ")";
   }
+  return "";
+}
+
+void Run::take_pieces(std::vector<PatchPiece> pieces) {
+  pieces_ = std::move(pieces);
   std::map<std::size_t, std::string> reasons;
-  for (const std::vector<std::size_t>& group : groups()) decide(group, reasons);
+  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
+    const std::vector<std::size_t> loops = loops_of(pieces_, group);
+    if (std::none_of(loops.begin(), loops.end(),
+                     [&](std::size_t loop) { return is_targeted(report_.holes[loop]); }))
+      continue;
+    std::string reason = obstacle(loops);
+    if (reason.empty()) reason = describe(flaw_of(pieces_, group, loops_));
+    for (std::size_t i : group) pieces_[i].wanted = reason.empty();
+    for (std::size_t loop : loops)
+      if (!reason.empty()) reasons[loop] = reason;
+  }
   for (const auto& [loop, reason] : reasons)
     if (is_targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
 }
 
-// Pieces that share a loop stand or fall together.
-std::vector<std::vector<std::size_t>> Run::groups() const {
-  std::vector<std::size_t> parent(pieces_.size());
-  std::iota(parent.begin(), parent.end(), std::size_t(0));
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i];
-    return i;
-  };
-  std::map<std::size_t, std::size_t> first;  // piece of each loop
+// The loops that another octree may close.
+std::vector<char> Run::left_open() const {
+  std::vector<char> open(loops_.size(), 0), reached(loops_.size(), 0);
+  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
+    const bool defect =
+        std::any_of(group.begin(), group.end(), [&](std::size_t i) { return !pieces_[i].defect.empty(); });
+    for (std::size_t loop : loops_of(pieces_, group)) {
+      reached[loop] = 1;
+      open[loop] = defect || report_.holes[loop].reason == describe(Sheet::Flaw::open);
+    }
+  }
+  for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= is_targeted(report_.holes[i]) && !reached[i];
+  return open;
+}
+
+// Puts those of the fresh pieces that close open loops only in the place of the pieces there. Returns the
+// number of the first of them: they are the last ones then.
+std::size_t Run::replace(std::vector<PatchPiece> fresh, const std::vector<char>& open) {
+  std::vector<char> taken(loops_.size(), 0);
+  std::vector<PatchPiece> usable;
+  for (const std::vector<std::size_t>& group : group_by_loops(fresh)) {
+    const std::vector<std::size_t> loops = loops_of(fresh, group);
+    if (flaw_of(fresh, group, loops_) != Sheet::Flaw::none) continue;
+    const auto is_open = [&](std::size_t loop) { return open[loop] != 0; };
+    if (std::none_of(loops.begin(), loops.end(), is_open) ||
+        !std::all_of(loops.begin(), loops.end(),
+                     [&](std::size_t loop) { return is_open(loop) || companion(loop); }))
+      continue;
+    for (std::size_t loop : loops) taken[loop] = 1;
+    for (std::size_t i : group) {
+      fresh[i].wanted = true;
+      usable.push_back(std::move(fresh[i]));
+    }
+  }
+  std::vector<char> gone(pieces_.size(), 0);
+  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
+    const std::vector<std::size_t> loops = loops_of(pieces_, group);
+    if (std::none_of(loops.begin(), loops.end(), [&](std::size_t loop) { return taken[loop] != 0; }))
+      continue;
+    std::string defect;
+    for (std::size_t i : group) {
+      if (defect.empty()) defect = pieces_[i].defect;
+      gone[i] = 1;
+    }
+    for (std::size_t loop : loops)
+      if (!taken[loop] && is_targeted(report_.holes[loop])) report_.holes[loop].reason = defect;
+  }
+  std::vector<PatchPiece> kept;
   for (std::size_t i = 0; i < pieces_.size(); ++i)
-    for (std::size_t loop : pieces_[i].loops) {
-      const auto [it, fresh] = first.try_emplace(loop, i);
-      if (!fresh) parent[std::max(root(i), root(it->second))] = std::min(root(i), root(it->second));
+    if (!gone[i]) kept.push_back(std::move(pieces_[i]));
+  pieces_ = std::move(kept);
+  const std::size_t first = pieces_.size();
+  std::move(usable.begin(), usable.end(), std::back_inserter(pieces_));
+  for (std::size_t loop = 0; loop < loops_.size(); ++loop)
+    if (taken[loop] && open[loop]) report_.holes[loop].reason.clear();
+  return first;
+}
+
+// Closes what it can of the open loops with the pieces of other octrees. Whether it tried.
+bool Run::try_others(const PreparedConstraints& constraints, const PieceFinisher& finisher,
+                     const Progress& progress) {
+  const char* const stage = "trying another octree";
+  std::vector<char> open = left_open();
+  int tries = 0;
+  for (; tries < most_retries && std::find(open.begin(), open.end(), 1) != open.end(); ++tries) {
+    const Progress part = progress.part(1.0 * tries / most_retries, (tries + 1.0) / most_retries, stage);
+    std::vector<PatchPiece> fresh;
+    {
+      VolumeSolution solution = solve(options_.shifts + tries, constraints, part.part(0, 0.5, stage));
+      smooth(solution, options_, constraints, part.part(0.5, 0.5, stage));
+      fresh = pieces_of(solution.surface);
     }
-  std::map<std::size_t, std::vector<std::size_t>> by_root;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) by_root[root(i)].push_back(i);
-  std::vector<std::vector<std::size_t>> groups;
-  for (auto& [top, members] : by_root) groups.push_back(std::move(members));
-  return groups;
+    const std::size_t first = replace(std::move(fresh), open);
+    finisher.finish(pieces_, first, part.part(0.5, 1, stage));
+    finisher.separate(pieces_, part.part(1, 1, stage));
+    for (const std::vector<std::size_t>& group : group_by_loops(pieces_))
+      if (group.front() >= first &&
+          std::all_of(group.begin(), group.end(), [&](std::size_t i) { return pieces_[i].defect.empty(); }))
+        for (std::size_t loop : loops_of(pieces_, group)) open[loop] = 0;
+  }
+  return tries > 0;
 }
 
-void Run::decide(const std::vector<std::size_t>& group, std::map<std::size_t, std::string>& reasons) {
-  std::vector<std::size_t> loops;
-  bool whole = true, any_target = false;
-  std::string reason;
-  for (std::size_t i : group) {
-    loops.insert(loops.end(), pieces_[i].loops.begin(), pieces_[i].loops.end());
-    whole &= pieces_[i].sheet.whole;
+AtomicVolumesFigures Run::close(const Progress& progress) {
+  StageClock clock(report_);
+  divisible_ = make_divisible(mesh_, topology_, input_, progress);
+  refuse_sewn_loops();
+  const PreparedConstraints constraints(divided_mesh(), divided_topology(), divided(), options_.constraints,
+                                        progress.part(0, 0, ""));
+  AtomicVolumesFigures figures;
+  {
+    const VolumeSolution solution = best_solution(constraints, progress.part(0, 0.4, "dividing space"));
+    figures = solution.figures;
+    std::vector<Sheet> sheets = sheets_of(solution.surface);
+    for (const auto& notes :
+         {constraints.notes(), solution.notes, describe_bubbles(sheets, options_.constraints)})
+      report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
+    take_pieces(make_pieces(std::move(sheets), topology_, loop_numbers_));
   }
-  for (std::size_t loop : loops) {
-    const HoleReport& hole = report_.holes[loop];
-    any_target |= is_targeted(hole);
-    if (is_targeted(hole) || companion(loop) || !reason.empty()) continue;
-    reason = hole.outcome == HoleOutcome::skipped
-                 ? "one patch closes this hole and another that is to stay open (" + hole.reason + ")"
-                 : "one patch closes this hole and another that cannot be closed (" + hole.reason + ")";
-  }
-  if (reason.empty() && !whole)
-    reason =
-        "space round this rim could not be divided: faces touch or intersect each other there, or MaxDepth "
-        "is too small";
-  if (any_target && reason.empty())
-    for (std::size_t i : group) pieces_[i].wanted = true;
-  else
-    for (std::size_t loop : loops) reasons[loop] = reason;
-}
-
-// Makes the patch of volume faces, joined to the mesh.
-void Run::prepare_piece(Piece& piece, const Progress& progress) const {
-  RimPatch rough = make_rim_patch(mesh_, topology_, piece.sheet);
-  remove_steiner_points(rough, neighbourhood_, {}, progress);
-  if (rough.steiner_points > 0)
-    piece.defect = "the patch could not be joined to " + std::to_string(rough.steiner_points) +
-                   (rough.steiner_points == 1 ? " edge of the rim" : " edges of the rim");
-  else
-    piece.rough.emplace(std::move(rough));
-}
-
-void Run::finish_piece(Piece& piece, const FinishingOptions& finishing, const std::vector<Corners>& obstacles,
-                       const Progress& progress) const {
-  if (!piece.rough) return;
-  const RimPatch& rough = *piece.rough;
-  std::vector<const BoundaryLoop*> rim;
-  for (const BoundaryLoop& loop : rough.loops) rim.push_back(&loop);
-  const auto find = [&](const PatchMesh& now) {
-    PatchFault fault;
-    const Patch patch = as_patch(now, rough.rim_vertices, mesh_);
-    PatchCheck check = check_patch(neighbourhood_, patch, rim, progress);
-    if (!check.passed()) {
-      fault.defect = describe(check.defect);
-      if (can_be_mended(check.defect)) fault.triangles = std::move(check.patch_triangles);
-    } else if (!obstacles.empty()) {
-      std::vector<Corners> triangles;
-      for (const Triangle& t : patch.triangles) triangles.push_back(corners(mesh_, patch, t));
-      for (const auto& pair : improper_pairs_between(triangles, obstacles))
-        fault.triangles.push_back(pair.first);
-      fault.triangles.erase(std::unique(fault.triangles.begin(), fault.triangles.end()),
-                            fault.triangles.end());
-      if (!fault.triangles.empty()) fault.defect = "the patch meets the patch of another hole";
-    }
-    return fault;
-  };
-  const FinishedPatch finished =
-      finish(rough.mesh, finishing, {rough.rim, neighbourhood_, obstacles, find}, progress);
-  piece.route = finished.route;
-  piece.defect = finished.defect;
-  piece.patch = piece.defect.empty() ? as_patch(finished.mesh, rough.rim_vertices, mesh_) : Patch();
-}
-
-void Run::finish_pieces(const Progress& progress) {
-  double total = 0;
-  for (const Piece& piece : pieces_)
-    total += piece.wanted ? static_cast<double>(piece.sheet.triangles.size()) : 0;
-  const Progress within = progress.part(0, 0, "fairing the patches");
-  std::mutex mutex;
-  std::exception_ptr error;
-  tbb::parallel_for(std::size_t(0), pieces_.size(), [&](std::size_t i) {
-    if (!pieces_[i].wanted) return;
-    try {
-      prepare_piece(pieces_[i], within);
-      finish_piece(pieces_[i], finishing(), {}, within);
-      progress.advance(static_cast<double>(pieces_[i].sheet.triangles.size()) / total);
-    } catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (!error) error = std::current_exception();
-    }
-  });
-  if (error) std::rethrow_exception(error);
-}
-
-// The other patches near a piece.
-std::vector<Corners> Run::obstacles_of(std::size_t piece) const {
-  Box box;
-  for (const SheetVertex& v : pieces_[piece].sheet.vertices)
-    box.include(bounding_box(v.position, v.position, v.position));
-  // A fair surface bulges over the stairs by less than their extent.
-  for (int k = 0; k < 3; ++k) {
-    const double size = box.high[k] - box.low[k];
-    box.low[k] -= size;
-    box.high[k] += size;
-  }
-  std::vector<Corners> triangles;
-  for (std::size_t i = 0; i < pieces_.size(); ++i)
-    for (const Triangle& t : pieces_[i].patch.triangles) {
-      if (i == piece) break;
-      const Corners c = corners(mesh_, pieces_[i].patch, t);
-      if (box.meets(bounding_box(c[0], c[1], c[2]))) triangles.push_back(c);
-    }
-  return triangles;
-}
-
-// The pieces whose patches meet another's, ascending; of two that meet only the later one if asked.
-std::vector<std::size_t> Run::pieces_in_conflict(bool later_only) const {
-  std::vector<Corners> triangles;
-  std::vector<std::size_t> owner, found;
-  for (std::size_t i = 0; i < pieces_.size(); ++i)
-    for (const Triangle& t : pieces_[i].patch.triangles) {
-      triangles.push_back(corners(mesh_, pieces_[i].patch, t));
-      owner.push_back(i);
-    }
-  for (const auto& [a, b] : improper_pairs(triangles)) {
-    if (owner[a] == owner[b]) continue;
-    found.push_back(std::max(owner[a], owner[b]));
-    if (!later_only) found.push_back(std::min(owner[a], owner[b]));
-  }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
-
-// Patches that were finished each for itself may meet. The later one is finished again with the others in its
-// way; where that is no help both stay as the faces of the volumes, which meet nothing; and should others
-// meet these, they too.
-void Run::separate(const Progress& progress) {
-  std::vector<std::size_t> rough;
-  for (std::size_t i : pieces_in_conflict(true)) {
-    finish_piece(pieces_[i], finishing(), obstacles_of(i), progress);
-    if (!pieces_[i].defect.empty()) rough.push_back(i);
-  }
-  const FinishingOptions none{false, std::nullopt, std::nullopt};
-  for (int round = 0; round < most_separations && !rough.empty(); ++round) {
-    for (std::size_t i : rough) finish_piece(pieces_[i], none, {}, progress);
-    rough = pieces_in_conflict(false);
-  }
-  for (std::size_t i : pieces_in_conflict(true)) {
-    pieces_[i].patch = Patch();
-    pieces_[i].defect = "the patch meets the patch of another hole";
-  }
-  progress.update(1);
+  clock.end_of("dividing space and cutting");
+  const PieceFinisher finisher(mesh_, topology_, input_, divided(),
+                               {options_.remesh, options_.fairing, options_.edge_length});
+  finisher.finish(pieces_, 0, progress.part(0.4, 0.8, "fairing the patches"));
+  clock.end_of("fairing the patches");
+  finisher.separate(pieces_, progress.part(0.8, 0.85, "comparing the patches"));
+  clock.end_of("comparing the patches");
+  if (try_others(constraints, finisher, progress.part(0.85, 1, "trying another octree")))
+    clock.end_of("trying other octrees");
+  return figures;
 }
 
 AtomicVolumesResult Run::result(CompletionReport report) {
@@ -330,18 +321,15 @@ AtomicVolumesResult Run::result(CompletionReport report) {
   result.completion.patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
   std::vector<HoleReport> holes;
   std::vector<char> merged(report.holes.size(), 0);
-  for (const std::vector<std::size_t>& group : groups()) {
+  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
     if (!pieces_[group.front()].wanted) continue;
-    std::vector<std::size_t> loops;
+    const std::vector<std::size_t> loops = loops_of(pieces_, group);
     bool closed = true;
     std::string defect;
     for (std::size_t i : group) {
-      loops.insert(loops.end(), pieces_[i].loops.begin(), pieces_[i].loops.end());
       closed &= pieces_[i].defect.empty();
       if (defect.empty()) defect = pieces_[i].defect;
     }
-    std::sort(loops.begin(), loops.end());
-    loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
     HoleReport& hole = report.holes[loops.front()];
     const double first_edges = static_cast<double>(hole.edges);
     Vector3 centre = hole.centre * first_edges;
@@ -404,17 +392,7 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
   Run run(mesh, topology, loops, options, report);
   clock.end_of("finding the holes");
   AtomicVolumesFigures figures;
-  if (run.anything_to_do()) {
-    const VolumeSolution solution = run.solve(progress.part(0.1, 0.5, "dividing space"));
-    figures = solution.figures;
-    report.notes.insert(report.notes.end(), solution.notes.begin(), solution.notes.end());
-    clock.end_of("dividing space and cutting");
-    run.take_pieces(solution.surface);
-    run.finish_pieces(progress.part(0.5, 0.95, "fairing the patches"));
-    clock.end_of("fairing the patches");
-    run.separate(progress.part(0.95, 1, "comparing the patches"));
-    clock.end_of("comparing the patches");
-  }
+  if (run.anything_to_do()) figures = run.close(progress.part(0.1, 1, "dividing space"));
   progress.update(1);
   AtomicVolumesResult result = run.result(std::move(report));
   result.completion.report.figures = named(figures);

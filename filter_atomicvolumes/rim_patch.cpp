@@ -17,6 +17,9 @@ constexpr int most_passes = 16;
 // How far from a Steiner point vertices are relaxed to make room.
 constexpr int relaxed_rings = 2;
 
+// The smallest part of the way into the patch by which a Steiner point is taken off its edge.
+constexpr double smallest_lift = 1e-4;
+
 // Where on the way from a Steiner point to its neighbours their edges are split.
 constexpr double shrinking = 0.3;
 
@@ -67,8 +70,6 @@ class SteinerRemover {
 
  private:
   void find_edges();
-  Index leaving_along_boundary(Index vertex) const;
-  Index arriving_along_boundary(Index vertex) const;
   bool on_edge(Index vertex, Index edge) const {
     return mesh_.on_rim(vertex) ? vertex == edge || vertex == patch_.rim.next[edge]
                                 : edge_of_[vertex] == edge;
@@ -78,6 +79,7 @@ class SteinerRemover {
   bool flip_one(Index steiner);
   void shrink_fan(Index steiner);
   void relax_around(Index steiner);
+  bool lift(Index steiner);
 
   RimPatch& patch_;
   PatchMesh& mesh_;
@@ -87,29 +89,13 @@ class SteinerRemover {
   std::vector<Index> previous_;  // along the rim
 };
 
-Index SteinerRemover::leaving_along_boundary(Index vertex) const {
-  Index found = none;
-  mesh_.for_outgoing(vertex, [&](Index out) {
-    if (mesh_.is_boundary(out)) found = out;
-  });
-  return found;
-}
-
-Index SteinerRemover::arriving_along_boundary(Index vertex) const {
-  Index found = none;
-  mesh_.for_outgoing(vertex, [&](Index out) {
-    if (mesh_.is_boundary(PatchMesh::previous(out))) found = PatchMesh::previous(out);
-  });
-  return found;
-}
-
 void SteinerRemover::find_edges() {
   edge_of_.assign(mesh_.vertex_count(), none);
   previous_.resize(mesh_.rim_size());
   for (Index place = 0; place < mesh_.rim_size(); ++place) {
     previous_[patch_.rim.next[place]] = place;
-    for (Index v = mesh_.target(leaving_along_boundary(place)); !mesh_.on_rim(v);
-         v = mesh_.target(leaving_along_boundary(v))) {
+    for (Index v = mesh_.target(mesh_.leaving_along_boundary(place)); !mesh_.on_rim(v);
+         v = mesh_.target(mesh_.leaving_along_boundary(v))) {
       edge_of_[v] = place;
       steiner_.push_back(v);
       guarded_.rest(v, patch_.rim_faces[place]);
@@ -133,7 +119,7 @@ bool SteinerRemover::makes_chord(Index gone, Index kept) const {
 }
 
 bool SteinerRemover::collapse(Index steiner) {
-  const Index out = leaving_along_boundary(steiner), in = arriving_along_boundary(steiner);
+  const Index out = mesh_.leaving_along_boundary(steiner), in = mesh_.arriving_along_boundary(steiner);
   const bool forward_first = mesh_.length(out) < mesh_.length(in);
   for (bool forward : {forward_first, !forward_first}) {
     const Index kept = forward ? mesh_.target(out) : mesh_.origin(in);
@@ -205,6 +191,29 @@ void SteinerRemover::relax_around(Index steiner) {
   }
 }
 
+// Takes the point off its edge, a little towards the middle of the patch or one of the point's neighbours,
+// and puts a thin triangle between it and the edge: a small change, which hardly anything can be in the way
+// of.
+bool SteinerRemover::lift(Index steiner) {
+  const Vector3 here = mesh_.position(steiner);
+  std::vector<Vector3> ways = {Vector3::Zero()};
+  mesh_.for_outgoing(steiner, [&](Index out) {
+    const Index t = out / 3;
+    const auto& [a, b, c] = mesh_.triangles()[t];
+    const Vector3 way = (mesh_.position(a) + mesh_.position(b) + mesh_.position(c)) / 3 - here;
+    ways.push_back(way);
+    ways.front() += way;
+    if (!mesh_.is_boundary(out)) ways.push_back(mesh_.position(mesh_.target(out)) - here);
+  });
+  for (double part = 0.5; part > smallest_lift; part *= 0.25)
+    for (const Vector3& way : ways)
+      if (guarded_.fill_at_boundary(steiner, here + part * way)) {
+        edge_of_[steiner] = none;
+        return true;
+      }
+  return false;
+}
+
 std::size_t SteinerRemover::run(const Progress& progress) {
   std::vector<Index> unrounded;
   for (Index v = static_cast<Index>(mesh_.rim_size()); v < mesh_.vertex_count(); ++v)
@@ -223,7 +232,7 @@ std::size_t SteinerRemover::run(const Progress& progress) {
       if (!gone && pass > 1) {
         if (pass > 2) relax_around(steiner);
         if (pass % 2 == 0) shrink_fan(steiner);
-        gone = collapse(steiner);
+        gone = collapse(steiner) || (pass > 2 && lift(steiner));
       }
       if (!gone) left.push_back(steiner);
       progress.check();

@@ -3,20 +3,18 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "filter_atomicvolumes/touching_fans.h"
+
 namespace meshcomplete {
 namespace {
 
 constexpr Index none = VolumeVertex::none;
-
-// The doubles of a vertex move by this part of the shortest edge at it.
-constexpr double separation = 0.1;
 
 // One side of a triangle, from `low` to `high` when `forward`.
 struct FaceSide {
@@ -30,8 +28,10 @@ struct FaceSide {
 
 class Splitter {
  public:
-  Splitter(const TriangleMesh& mesh, const MeshTopology& topology, const LabelledSurface& surface)
+  Splitter(const TriangleMesh& mesh, const MeshTopology& topology, const LabelledSurface& surface,
+           const TriangleMesh& input)
       : mesh_(mesh),
+        input_(input),
         topology_(topology),
         surface_(surface),
         parent_(3 * surface.triangles.size()),
@@ -57,12 +57,13 @@ class Splitter {
   Index vertex(Index half_edge) const { return surface_.triangles[half_edge / 3][half_edge % 3]; }
   static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
   void number_fans();
+  void name_corners();
   void add_midpoints();
   void divide(Index triangle, const Index* middle);
   void separate_doubles();
   std::vector<Sheet> pieces() const;
 
-  const TriangleMesh& mesh_;
+  const TriangleMesh &mesh_, &input_;
   const MeshTopology& topology_;
   const LabelledSurface& surface_;
   std::vector<Index> parent_;   // of corners: those of one fan hang together
@@ -73,7 +74,9 @@ class Splitter {
   std::vector<SheetVertex> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<LabelledSurface::Between> volumes_;
+  std::vector<Index> origin_;  // of each vertex, in the surface; `none` for middles
   std::vector<char> doubled_;
+  std::vector<char> joined_;  // vertices that would have to be two of the input's at once
 };
 
 std::uint64_t pair_key(Index a, Index b) {
@@ -194,6 +197,7 @@ void Splitter::number_fans() {
         one.rim_edge = original.rim_edge;
       }
       vertices_.push_back(one);
+      origin_.push_back(v);
       doubled_.push_back(!at_rim[fan] && (on_rim || seen[v]));
       seen[v] = 1;
     }
@@ -201,23 +205,25 @@ void Splitter::number_fans() {
   }
 }
 
-// Vertices that were doubled retreat into their own inside.
-void Splitter::separate_doubles() {
-  std::vector<Vector3> normal(vertices_.size(), Vector3::Zero());
-  std::vector<double> shortest(vertices_.size(), std::numeric_limits<double>::infinity());
-  for (const Triangle& t : triangles_) {
-    const Vector3 &a = vertices_[t[0]].position, &b = vertices_[t[1]].position, &c = vertices_[t[2]].position;
-    const Vector3 area = (b - a).cross(c - a);
-    for (int k = 0; k < 3; ++k) {
-      normal[t[k]] += area;
-      const double length = (vertices_[t[(k + 1) % 3]].position - vertices_[t[k]].position).norm();
-      shortest[t[k]] = std::min(shortest[t[k]], length);
-      shortest[t[(k + 1) % 3]] = std::min(shortest[t[(k + 1) % 3]], length);
+// Which vertex of the input a fan's corner is: the one at the end of its rim edges.
+void Splitter::name_corners() {
+  std::vector<char> named(vertices_.size(), 0);
+  joined_.assign(vertices_.size(), 0);
+  for (Index h = 0; h < partner_.size(); ++h) {
+    if (partner_[h] != none || rim_[h] == none) continue;
+    const Index face = rim_[h] / 3;
+    for (const Index corner : {h, next(h)}) {
+      const Index v = triangles_[corner / 3][corner % 3], same = vertices_[v].input;
+      if (same == none) continue;
+      const Index place = surface_.vertices[vertex(corner)].input == mesh_.triangles[face][rim_[h] % 3]
+                              ? rim_[h] % 3
+                              : (rim_[h] % 3 + 1) % 3;
+      const Index name = input_.triangles[face][place];
+      if (named[v] && name != same) joined_[v] = 1;
+      vertices_[v].input = name;
+      named[v] = 1;
     }
   }
-  for (std::size_t v = 0; v < vertices_.size(); ++v)
-    if (doubled_[v] && normal[v].norm() > 0)
-      vertices_[v].position -= separation * shortest[v] * normal[v].normalized();
 }
 
 // Two pairs of faces that share both ends of an edge, because neither end is doubled, get different middles.
@@ -236,6 +242,7 @@ void Splitter::add_midpoints() {
     const Vector3 &a = vertices_[triangles_[h / 3][h % 3]].position,
                   &b = vertices_[triangles_[h / 3][next(h) % 3]].position;
     vertices_.push_back({0.5 * (a + b), none, none, false});
+    origin_.push_back(none);
     doubled_.push_back(1);
   }
   for (Index t = 0; 3 * t < middle.size(); ++t) divide(t, &middle[3 * t]);
@@ -259,6 +266,16 @@ void Splitter::divide(Index triangle, const Index* middle) {
     triangles_.push_back({outline[0], outline[i], outline[i + 1]});
     volumes_.push_back(LabelledSurface::Between(volumes_[triangle]));
   }
+}
+
+void Splitter::separate_doubles() {
+  std::vector<TouchingFan> fans;
+  for (Index v = 0; v < vertices_.size(); ++v) {
+    if (!doubled_[v]) continue;
+    const VolumeVertex* original = origin_[v] == none ? nullptr : &surface_.vertices[origin_[v]];
+    fans.push_back({v, original ? original->input : none, original ? original->rim_edge : none});
+  }
+  retreat(mesh_, fans, triangles_, vertices_);
 }
 
 std::vector<Sheet> Splitter::pieces() const {
@@ -295,9 +312,11 @@ std::vector<Sheet> Splitter::pieces() const {
     if (partner_[h] != none) continue;
     Sheet& sheet = sheets[sheet_of[find(triangles_[h / 3][h % 3])]];
     if (rim_[h] == none)
-      sheet.whole = false;
+      sheet.flaw = Sheet::Flaw::open;
     else
       sheet.closes.push_back(rim_[h]);
+    const Index v = triangles_[h / 3][h % 3];
+    if (joined_[v] && sheet.flaw == Sheet::Flaw::none) sheet.flaw = Sheet::Flaw::joins_vertices;
   }
   for (Sheet& sheet : sheets) {
     std::sort(sheet.closes.begin(), sheet.closes.end());
@@ -310,6 +329,7 @@ std::vector<Sheet> Splitter::run() {
   index_rim_edges();
   pair_sides();
   number_fans();
+  name_corners();
   add_midpoints();
   separate_doubles();
   return pieces();
@@ -318,8 +338,8 @@ std::vector<Sheet> Splitter::run() {
 }  // namespace
 
 std::vector<Sheet> split_into_sheets(const TriangleMesh& mesh, const MeshTopology& topology,
-                                     const LabelledSurface& surface) {
-  return Splitter(mesh, topology, surface).run();
+                                     const LabelledSurface& surface, const TriangleMesh& input) {
+  return Splitter(mesh, topology, surface, input).run();
 }
 
 }  // namespace meshcomplete

@@ -25,13 +25,20 @@ struct Sheet {
   std::vector<LabelledSurface::Between> volumes;  ///< of each triangle
   /// Boundary half-edges of the mesh that it closes, ascending. Empty for a piece without a rim.
   std::vector<Index> closes;
-  bool whole = true;  ///< false when its boundary does not lie on rims: a cube there could not be resolved
+  /// What keeps it from closing its rims.
+  enum class Flaw {
+    none,
+    open,           ///< its boundary does not lie on rims: a cube there could not be resolved
+    joins_vertices  ///< a corner would have to be two rim vertices at the same position
+  };
+  Flaw flaw = Flaw::none;
 };
 
 /// The pieces of a labelled surface. Round an edge with more than two faces (the mesh's own triangle counts
 /// at a rim) those that bound one inside sector belong together; vertices are doubled for every fan, and the
-/// doubles move into their own inside by a small part of their edges. Cost: O(n log n) for n triangles.
+/// doubles move into their own inside by a small part of their edges. `input` has the same faces as `mesh`
+/// and tells the vertices at their corners, where some are one in `mesh`. Cost: O(n log n) for n triangles.
 std::vector<Sheet> split_into_sheets(const TriangleMesh& mesh, const MeshTopology& topology,
-                                     const LabelledSurface& surface);
+                                     const LabelledSurface& surface, const TriangleMesh& input);
 
 }  // namespace meshcomplete

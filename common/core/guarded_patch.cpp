@@ -191,4 +191,32 @@ bool GuardedPatch::collapse_at_boundary(Index h, bool onto_target) {
   return true;
 }
 
+bool GuardedPatch::fill_at_boundary(Index vertex, const Vector3& position) {
+  const Vector3 place = as_stored(position);
+  if (!place.allFinite() || !patch_.can_fill_at_boundary(vertex)) return false;
+  const Index a = patch_.origin(patch_.arriving_along_boundary(vertex)),
+              b = patch_.target(patch_.leaving_along_boundary(vertex));
+  if (forbidden(a, b)) return false;
+  std::vector<Index> triangles;
+  star(vertex, triangles);
+  // The vertex rests on nothing at its new place.
+  std::vector<Fresh> fresh = {{{patch_.position(a), patch_.position(b), place}, {a, b, none}}};
+  for (Index t : triangles) {
+    Triangle v = patch_.triangles()[t];
+    Corners c = corners(v);
+    for (int k = 0; k < 3; ++k)
+      if (v[k] == vertex) {
+        c[k] = place;
+        v[k] = none;
+      }
+    fresh.push_back({c, v});
+  }
+  if (!all_free(fresh, triangles)) return false;
+  patch_.move(vertex, place);
+  triangles.push_back(patch_.fill_at_boundary(vertex));
+  for (Index t : triangles) update(t);
+  if (vertex < resting_.size()) resting_[vertex] = none;
+  return true;
+}
+
 }  // namespace meshcomplete

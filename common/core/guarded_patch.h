@@ -42,6 +42,8 @@ class GuardedPatch {
   bool flip(Index half_edge);
   bool collapse(Index half_edge);
   bool collapse_at_boundary(Index half_edge, bool onto_target);
+  /// Takes a vertex off the boundary, to another position. It rests on nothing any more.
+  bool fill_at_boundary(Index vertex, const Vector3& position);
 
  private:
   using Corners = std::array<Vector3, 3>;

@@ -216,6 +216,29 @@ void PatchMesh::collapse_at_boundary(Index h, bool onto_target) {
   start_fan(c, beyond_bc);
 }
 
+Index PatchMesh::arriving_along_boundary(Index vertex) const {
+  Index arriving = previous(half_edge_of_[vertex]);
+  while (opposite_[arriving] != none) arriving = previous(opposite_[arriving]);
+  return arriving;
+}
+
+bool PatchMesh::can_fill_at_boundary(Index vertex) const {
+  if (on_rim(vertex) || !at_boundary(vertex)) return false;
+  return !joined(origin(arriving_along_boundary(vertex)), target(leaving_along_boundary(vertex)));
+}
+
+Index PatchMesh::fill_at_boundary(Index vertex) {
+  const Index in = arriving_along_boundary(vertex), out = leaving_along_boundary(vertex);
+  const Index a = origin(in), b = target(out);
+  const Index added = static_cast<Index>(triangles_.size());
+  triangles_.push_back({a, b, vertex});
+  opposite_.resize(opposite_.size() + 3, none);
+  join(3 * added + 1, out);
+  join(3 * added + 2, in);
+  half_edge_of_[a] = 3 * added;
+  return added;
+}
+
 void PatchMesh::compact() {
   std::vector<Index> number(positions_.size(), none);
   std::size_t kept = 0;

@@ -12,9 +12,9 @@ namespace meshcomplete {
 
 /// A manifold triangulation with boundary. Vertices 0 to `rim_size() - 1` are the rim: they never move, are
 /// never removed, and the boundary edges between them are never split. Only a patch in the making has other
-/// vertices at its boundary, until `collapse_at_boundary` has removed them. Half-edge `3 * t + k` goes from
-/// corner k to corner k + 1 of triangle t. Removed vertices and triangles leave gaps until `compact` is
-/// called.
+/// vertices at its boundary, until `collapse_at_boundary` or `fill_at_boundary` has taken them off it.
+/// Half-edge `3 * t + k` goes from corner k to corner k + 1 of triangle t. Removed vertices and triangles
+/// leave gaps until `compact` is called.
 class PatchMesh {
  public:
   static constexpr Index none = 0xffffffffu;
@@ -25,6 +25,9 @@ class PatchMesh {
 
   std::size_t rim_size() const { return rim_size_; }
   bool on_rim(Index vertex) const { return vertex < rim_size_; }
+  /// The half-edges of the boundary that leave a vertex there and arrive at it.
+  Index leaving_along_boundary(Index vertex) const { return half_edge_of_[vertex]; }
+  Index arriving_along_boundary(Index vertex) const;
   /// On the rim, or one of the other vertices between rim vertices that a patch in the making may have.
   bool at_boundary(Index vertex) const { return opposite_[half_edge_of_[vertex]] == none; }
   std::size_t vertex_count() const { return positions_.size(); }    ///< with gaps
@@ -96,6 +99,12 @@ class PatchMesh {
   bool can_collapse_at_boundary(Index half_edge, bool onto_target) const;
   /// Removes that end and the triangle at the half-edge. Requires `can_collapse_at_boundary`.
   void collapse_at_boundary(Index half_edge, bool onto_target);
+
+  /// Whether the vertex, at the boundary and not on the rim, can be taken off it by a triangle with its two
+  /// neighbours along the boundary: they are not joined yet.
+  bool can_fill_at_boundary(Index vertex) const;
+  /// Adds that triangle, and returns it: the vertex becomes an inner one. Requires `can_fill_at_boundary`.
+  Index fill_at_boundary(Index vertex);
 
   /// Closes the gaps. Rim vertices keep their numbers, the others their order.
   void compact();

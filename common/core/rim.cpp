@@ -49,6 +49,17 @@ void smooth_along(const std::vector<Index>& next, std::vector<double>& values) {
   }
 }
 
+// Chords from a vertex that the loops visit more than once: the same two vertices could be joined at two of
+// its places. Chords of many edges' length do not come up.
+void forbid_chords(Rim& rim, Index place) {
+  constexpr double longest = 16;  // in edges
+  const double reach = longest * rim.edge_length[place];
+  for (Index other = 0; other < rim.positions.size(); ++other)
+    if (other != place && rim.next[place] != other && rim.next[other] != place &&
+        (rim.positions[other] - rim.positions[place]).norm() <= reach)
+      rim.forbidden.emplace_back(std::min(place, other), std::max(place, other));
+}
+
 }  // namespace
 
 bool is_obstructed(const InputNeighbourhood& input, const Vector3& a, const Vector3& b) {
@@ -132,10 +143,13 @@ Rim collect_rim(const TriangleMesh& mesh, const MeshTopology& topology,
             rim.forbidden.emplace_back(std::min(a, b), std::max(a, b));
     }
   }
-  std::sort(rim.forbidden.begin(), rim.forbidden.end());
-  rim.forbidden.erase(std::unique(rim.forbidden.begin(), rim.forbidden.end()), rim.forbidden.end());
   for (Index v = 0; v < rim_size; ++v) rim.edge_length.push_back(sum[v] / std::max(count[v], 1));
   smooth_along(rim.next, rim.edge_length);
+  for (const auto& [vertex, all] : places)
+    if (all.size() > 1)
+      for (Index place : all) forbid_chords(rim, place);
+  std::sort(rim.forbidden.begin(), rim.forbidden.end());
+  rim.forbidden.erase(std::unique(rim.forbidden.begin(), rim.forbidden.end()), rim.forbidden.end());
   return rim;
 }
 

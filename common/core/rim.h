@@ -20,8 +20,8 @@ struct Rim {
   TriangleMesh ring;
   std::vector<double>
       edge_length;  ///< per loop vertex: mean length of the ring's edges near it, the resolution to match
-  ForbiddenEdges
-      forbidden;  ///< places in `positions` of vertices that an input edge joins, neighbours left out
+  ForbiddenEdges forbidden;  ///< places in `positions` of vertices that an input edge joins, and from those
+                             ///< that the loops visit more than once to all near by; neighbours left out
 };
 
 /// Cost: O(faces of the ring).

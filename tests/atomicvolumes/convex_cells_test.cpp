@@ -203,8 +203,8 @@ TEST(ConvexCells, PatchesAreClean) {
           extract(placed.lattice_mesh, division->decomposition.octree, division->complex,
                   cut_complex(placed.lattice_mesh, division->complex, CutWeight::area, {}));
       std::size_t closed = 0;
-      for (const Sheet& sheet : split_into_sheets(placed.mesh, placed.topology, surface)) {
-        ASSERT_TRUE(sheet.whole) << named.name << ", depth " << depth;
+      for (const Sheet& sheet : split_into_sheets(placed.mesh, placed.topology, surface, placed.mesh)) {
+        ASSERT_EQ(sheet.flaw, Sheet::Flaw::none) << named.name << ", depth " << depth;
         if (sheet.closes.empty()) continue;
         closed += sheet.closes.size();
         RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);

@@ -26,7 +26,7 @@ std::vector<Sheet> sheets_of(const PlacedMesh& placed) {
   const Labelling cut = cut_complex(placed.lattice_mesh, division->complex, CutWeight::area, {});
   return split_into_sheets(
       placed.mesh, placed.topology,
-      extract(placed.lattice_mesh, division->decomposition.octree, division->complex, cut));
+      extract(placed.lattice_mesh, division->decomposition.octree, division->complex, cut), placed.mesh);
 }
 
 std::vector<Index> steiner_points(const PatchMesh& mesh) {

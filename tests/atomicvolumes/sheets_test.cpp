@@ -60,7 +60,7 @@ std::vector<Index> closed_edges(const PlacedMesh& placed, const Sheet& sheet) {
 void expect_sheets(const PlacedMesh& placed, const std::vector<Sheet>& sheets) {
   std::vector<Index> all;
   for (const Sheet& sheet : sheets) {
-    ASSERT_TRUE(sheet.whole);
+    ASSERT_EQ(sheet.flaw, Sheet::Flaw::none);
     ASSERT_EQ(sheet.volumes.size(), sheet.triangles.size());
     const test::Shape shape = test::shape_of(sheet.triangles);
     ASSERT_TRUE(shape.manifold);
@@ -90,8 +90,8 @@ TEST(Sheets, AnyLabellingComesApartIntoManifolds) {
       if (!division) continue;
       for (double share : {0.0, 0.2, 0.5, 0.7}) {
         const Labelling labelling = test::random_labelling(division->complex, seed, share);
-        const auto sheets =
-            split_into_sheets(placed.mesh, placed.topology, surface_of(placed, *division, labelling));
+        const auto sheets = split_into_sheets(placed.mesh, placed.topology,
+                                              surface_of(placed, *division, labelling), placed.mesh);
         ASSERT_NO_FATAL_FAILURE(expect_sheets(placed, sheets))
             << named.name << ", seed " << seed << ", share " << share;
         pieces += sheets.size();

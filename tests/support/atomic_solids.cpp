@@ -71,7 +71,7 @@ void glue(const TriangleMesh& mesh, const MeshTopology& topology, const std::vec
   int euler = euler_characteristic(mesh.triangles);
   std::set<Index> closed;
   for (const Sheet& sheet : sheets) {
-    if (!sheet.whole || sheet.closes.empty()) continue;
+    if (sheet.flaw != Sheet::Flaw::none || sheet.closes.empty()) continue;
     euler += euler_characteristic(sheet.triangles);
     const auto origin = [&](Index h) { return mesh.triangles[h / 3][h % 3]; };
     for (Index h : sheet.closes) {
@@ -123,7 +123,8 @@ AtomicSolid complete_by_cut(const TriangleMesh& mesh, const VolumeConstraints& c
   const Labelling labelling = cut_complex(placed, complex, weight, tied.ties);
   AtomicSolid solid;
   glue(mesh, topology,
-       split_into_sheets(mesh, topology, extract(placed, decomposition.octree, complex, labelling)), solid);
+       split_into_sheets(mesh, topology, extract(placed, decomposition.octree, complex, labelling), mesh),
+       solid);
   solid.leaves = decomposition.octree.size();
   solid.notes = prepared.notes();
   solid.notes.insert(solid.notes.end(), tied.notes.begin(), tied.notes.end());
