@@ -149,6 +149,7 @@ std::vector<std::size_t> same_positions(const CMeshO& mesh) {
 Appended append_patch(MeshModel& model, const TriangleMesh& mesh, const Patch& patch,
                       const AppendOptions& options) {
   refuse_foreign(model, mesh, patch);
+  if (!options.left_out.empty()) throw std::logic_error("faces are left out of copies only");
   if (patch.empty()) return {model.cm.vert.size(), 0, model.cm.face.size(), 0};
   const PatchAttributes attributes = patch_attributes(model, mesh, patch);
   return append_computed(model, patch, attributes, same_positions(model.cm), options);

@@ -89,6 +89,38 @@ TEST(FaceRemoval, TheCompletionOfTheRestIsClean) {
   EXPECT_TRUE(measure(completed(rest, reduced.result.completion.patch), true).solid());
 }
 
+// Whatever the holes are like, what comes out has no defect that the input has not.
+TEST(FaceRemoval, HolesOfAllKinds) {
+  std::size_t removed = 0, done = 0;
+  for (const auto& [name, mesh] : test::holed_meshes()) {
+    AtomicVolumesOptions options;
+    options.max_depth = 8;
+    options.shifts = 2;
+    ReducedCompletion reduced;
+    try {
+      reduced = fill_without_offending_faces(mesh, {}, options);
+    } catch (const CompletionError& error) {
+      EXPECT_EQ(error.stage(), "removing faces") << name << ": " << error.what();
+      continue;
+    }
+    ++done;
+    removed += reduced.removed.size();
+    TriangleMesh rest = mesh;
+    for (auto t = reduced.removed.rbegin(); t != reduced.removed.rend(); ++t)
+      rest.triangles.erase(rest.triangles.begin() + *t);
+    const MeshStatistics before = measure(mesh, true),
+                         after = measure(completed(rest, reduced.result.completion.patch), true);
+    EXPECT_EQ(reduced.result.completion.report.count(HoleOutcome::failed), 0u) << name;
+    EXPECT_EQ(after.boundary_edges > 0, reduced.result.completion.report.count(HoleOutcome::skipped) > 0)
+        << name;
+    EXPECT_LE(after.self_intersecting_pairs, before.self_intersecting_pairs) << name;
+    EXPECT_EQ(after.inconsistent_edges, 0u) << name;
+    EXPECT_LE(after.non_manifold_edges, before.non_manifold_edges) << name;
+  }
+  EXPECT_GT(done, 8u);
+  EXPECT_GT(removed, 0u);
+}
+
 // Only what is to be closed loses faces; a hole that was asked for stays so when the selected faces go.
 TEST(FaceRemoval, LeavesOtherHolesAlone) {
   const TriangleMesh mesh = pinched_sphere(3, 3);

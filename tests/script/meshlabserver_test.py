@@ -1,4 +1,5 @@
 """Our filters in MeshLab's own meshlabserver: holes closed, the input kept bit for bit, messages in the log."""
+import re
 import sys
 import unittest
 
@@ -136,6 +137,25 @@ class AtomicVolumes(MeshLabTest):
         self.assert_refused(self.close([points, self.band()], InsideLayer=1, OutsideLayer=1), "is chosen twice")
         self.assert_refused(self.close([points, self.band()], InsideLayer=2), "the layer that the filter works on")
         self.assert_refused(self.close(self.band(), InsideLayer=7), "there is no layer 7")
+
+    def test_faces_are_removed_in_the_new_layer_that_is_saved(self):
+        """One rim edge is nearly a point: the cube that holds its ends is not simple at the depth limit."""
+        vertices, faces = mesh_files.band()
+        undirected, _ = mesh_files.edge_counts(faces)
+        a, b = next(edge for edge, count in sorted(undirected.items()) if count == 1)
+        vertices = list(vertices)
+        vertices[b] = tuple(p + 1e-4 * (q - p) for p, q in zip(vertices[a], vertices[b]))
+        path = self.folder / "pinched.ply"
+        mesh_files.write_ply(path, vertices, faces)
+        run = self.close(path, MaxDepth=8, DepthLimit=1)
+        self.assertTrue(run.saved, run)
+        self.assertRegex(run.log, r"The new layer lacks \d+ faces? of the input, counted from 0: \d+")
+        listed = re.search(r"counted from 0: ([\d, ]+)", run.log)[1]
+        removed = {int(number) for number in listed.split(",")}
+        after = mesh_files.Ply(run.output)
+        kept = [tuple(face) for number, face in enumerate(faces) if number not in removed]
+        self.assertEqual([tuple(face) for face in after.faces[:len(kept)]], kept)
+        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
 
     def test_a_given_symmetry(self):
         run = self.close(self.band(), Symmetry=4, SymmetryPoint="0 0 0", SymmetryDirection="0 0 1")
