@@ -26,6 +26,8 @@
 #include "benchmarks/mesh_file.h"
 #include "common/core/mesh_statistics.h"
 #include "filter_atomicvolumes/atomic_volumes.h"
+#include "filter_atomicvolumes/volume_smoothing.h"
+#include "filter_atomicvolumes/volume_solution.h"
 #include "tests/support/meshes.h"
 
 namespace {
@@ -324,53 +326,60 @@ void subdivided(const std::vector<std::string>& files) {
   }
 }
 
-/// The mean angle between the normals of neighbouring faces of the patch, in degrees: over the edges, and by
-/// their lengths.
-std::pair<double, double> normal_jump(const TriangleMesh& mesh, const Patch& patch) {
-  TriangleMesh only;
-  only.vertices = completed(mesh, patch).vertices;
-  only.triangles = patch.triangles;
-  const MeshTopology topology = build_topology(only);
-  const auto normal = [&](Index face) {
-    const auto [a, b, c] = only.triangles[face];
-    return Vector3(
-        (only.vertices[b] - only.vertices[a]).cross(only.vertices[c] - only.vertices[a]).normalized());
-  };
-  double sum = 0, by_length = 0, edges = 0, length = 0;
-  for (Index h = 0; h < topology.opposite.size(); ++h) {
-    const Index other = topology.opposite[h];
-    if (other >= topology.opposite.size() || other < h) continue;
-    const double cosine = normal(h / 3).dot(normal(other / 3));
-    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / pi;
-    const Triangle& t = only.triangles[h / 3];
-    const double side = (only.vertices[t[h % 3]] - only.vertices[t[(h + 1) % 3]]).norm();
-    sum += angle, edges += 1, by_length += angle * side, length += side;
+/// The mean angle between the normals of neighbouring faces of the patch, degrees, by the edges' lengths.
+double normal_jump(const TriangleMesh& mesh, const AtomicVolumesOptions& options) {
+  const Patch patch = run(mesh, options).result.completion.patch;
+  LabelledSurface surface;
+  for (const Vector3& position : completed(mesh, patch).vertices) {
+    surface.vertices.emplace_back();
+    surface.vertices.back().position = position;
   }
-  return {sum / std::max(edges, 1.0), by_length / std::max(length, 1e-300)};
+  surface.triangles = patch.triangles;
+  return mean_normal_jump(surface);
+}
+
+/// The same for the surface between the volumes, before it is joined to the rims.
+double smoothed_jump(const TriangleMesh& mesh, const AtomicVolumesOptions& options) {
+  const MeshTopology topology = build_topology(mesh);
+  const InputNeighbourhood neighbourhood(mesh);
+  const PreparedConstraints constraints(mesh, topology, neighbourhood, options.constraints);
+  VolumeSolution solution = solve_volumes(mesh, topology, neighbourhood, options, constraints, options.seed);
+  smooth(solution, options, constraints);
+  return mean_normal_jump(solution.surface);
 }
 
 void smoothed(const std::vector<std::string>& files) {
   std::vector<Model> models = {{"ball, one round hole", test::sphere_with_hole(4, 0.6)},
                                {"ball, ring-shaped gap", test::sphere_with_island(5, 0.6, 0.3)}};
   for (Model& model : models_of(files)) models.push_back(std::move(model));
+  struct Way {
+    VolumeSmoothing smoothing;
+    bool moving_centres;
+    int iterations;
+  };
+  const Way ways[] = {{VolumeSmoothing::none, false, 20},
+                      {VolumeSmoothing::constrained, false, 20},
+                      {VolumeSmoothing::constrained, false, 100},
+                      {VolumeSmoothing::two_pass, false, 20},
+                      {VolumeSmoothing::two_pass, true, 20}};
   std::printf(
-      "\nMean angle between neighbouring faces of the patch, degrees: over all edges (by their lengths)\n\n"
-      "| model | the cubes' | constrained | two passes | two passes, moving centres | constrained, remeshed, "
-      "faired |\n|---|---:|---:|---:|---:|---:|\n");
+      "\n| model | the cubes' | constrained | 100 iterations | two passes | moving centres "
+      "| constrained, joined to the rims | remeshed and faired "
+      "|\n|---|---:|---:|---:|---:|---:|---:|---:|\n");
   for (const Model& model : models) {
     std::string line = "| " + model.name + " |";
-    for (int way = 0; way < 5; ++way) {
-      AtomicVolumesOptions options = with_one_position();
-      options.smoothing = way == 0               ? VolumeSmoothing::none
-                          : way == 1 || way == 4 ? VolumeSmoothing::constrained
-                                                 : VolumeSmoothing::two_pass;
-      options.moving_centres = way == 3;
-      options.remesh = way == 4;
-      if (way != 4) options.fairing.reset();
-      const auto [mean, by_length] =
-          normal_jump(model.mesh, run(model.mesh, options).result.completion.patch);
-      line += text(" %.1f", mean) + text(" (%.1f) |", by_length);
+    AtomicVolumesOptions options = with_one_position();
+    for (const Way& way : ways) {
+      options.smoothing = way.smoothing;
+      options.moving_centres = way.moving_centres;
+      options.smoothing_iterations = way.iterations;
+      line += text(" %.1f |", smoothed_jump(model.mesh, options));
     }
+    options = with_one_position();
+    options.remesh = false;
+    options.fairing.reset();
+    line += text(" %.1f |", normal_jump(model.mesh, options));
+    line += text(" %.1f |", normal_jump(model.mesh, with_one_position()));
     std::printf("%s\n", line.c_str());
   }
 }
