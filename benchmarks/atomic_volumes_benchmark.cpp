@@ -232,11 +232,11 @@ void add_large_rows(const std::vector<Model>& large, std::vector<PaperRow>& rows
   sizes.insert(sizes.end(), 12, 200);
   const Model& first = large.front();
   const Model& last = large.back();
-  rows.push_back({{first.name + ", divided, 42 round holes",
+  rows.push_back({{first.name + ", divided, numerous round holes",
                    with_round_holes(benchmarks::subdivided(first.mesh), sizes)},
                   "angel: 340,000 faces, 530,000 nodes, 17.5 min",
                   "10"});
-  rows.push_back({{last.name + ", divided, 12 winding holes",
+  rows.push_back({{last.name + ", divided, long winding holes",
                    with_winding_holes(benchmarks::subdivided(last.mesh), 12, 400)},
                   "toes: 350,000 faces, 570,000 nodes, 19 min",
                   "10"});
@@ -414,7 +414,6 @@ void positions_line(const Model& model) {
   std::size_t closed = 0, solid = 0, restarts = 0;
   std::vector<std::size_t> nodes, depth;
   std::set<std::pair<std::size_t, long long>> topologies;
-  const Clock::time_point start = Clock::now();
   double taken = 0;
   for (int seed = 1; seed <= runs; ++seed) {
     AtomicVolumesOptions options = with_one_position();
@@ -428,6 +427,9 @@ void positions_line(const Model& model) {
     depth.push_back(static_cast<std::size_t>(sample.figures().depth));
     topologies.emplace(after.components, after.genus.value_or(-1));
     taken += sample.seconds;
+    for (const HoleReport& hole : sample.report().holes)
+      if (hole.outcome == HoleOutcome::failed)
+        std::fprintf(stderr, "%s, seed %d: %s\n", model.name.c_str(), seed, hole.reason.c_str());
   }
   const auto [least, greatest] = std::minmax_element(nodes.begin(), nodes.end());
   const auto [shallowest, deepest] = std::minmax_element(depth.begin(), depth.end());
@@ -437,7 +439,6 @@ void positions_line(const Model& model) {
   std::printf("| %s | %zu | %d | %zu | %zu | %zu | %s | %s | %s | %.2f |\n", model.name.c_str(),
               rim_edges(model.mesh), runs, closed, solid, restarts, between(*least, *greatest).c_str(),
               between(*shallowest, *deepest).c_str(), shapes.c_str(), taken / runs);
-  std::fprintf(stderr, "%s: %.1f s\n", model.name.c_str(), seconds_since(start));
 }
 
 void positions(const std::vector<std::string>& files) {
