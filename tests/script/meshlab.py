@@ -30,7 +30,7 @@ FILTERS = {
         ("RichFloat", "HintPrice", "0.01"), ("RichBool", "CarveLayers", "false"), ("RichEnum", "Symmetry", "0"),
         ("RichPoint3f", "SymmetryPoint", "0 0 0"), ("RichPoint3f", "SymmetryDirection", "1 0 0"),
         ("RichInt", "SymmetryFold", "2"), ("RichFloat", "SymmetryPrice", "0.5"), ("RichEnum", "Smoothing", "1"),
-        ("RichInt", "SmoothingIterations", "20"), ("RichBool", "MovingCentres", "false"), ("RichBool", "Remesh", "true"),
+        ("RichInt", "SmoothingIterations", "5"), ("RichBool", "MovingCentres", "false"), ("RichBool", "Remesh", "true"),
         ("RichEnum", "Fairing", "0"), ("RichAbsPerc", "EdgeLength", "0")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
