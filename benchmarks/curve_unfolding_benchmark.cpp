@@ -11,11 +11,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -27,6 +25,7 @@
 #include "benchmarks/arguments.h"
 #include "benchmarks/cgal_filling.h"
 #include "benchmarks/cut_holes.h"
+#include "benchmarks/measuring.h"
 #include "benchmarks/mesh_file.h"
 #include "common/core/error.h"
 #include "filter_curveunfold/curve_unfolding.h"
@@ -36,27 +35,24 @@
 namespace {
 
 using namespace meshcomplete;
+using benchmarks::Clock;
 using benchmarks::CutMesh;
+using benchmarks::file_name;
+using benchmarks::load_average;
+using benchmarks::loops_of;
+using benchmarks::median;
 using benchmarks::Rim;
-using Clock = std::chrono::steady_clock;
+using benchmarks::seconds_since;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double patience = 120;       // seconds that a run may take before it is given up
 constexpr double short_patience = 10;  // the same for each seed of table 1
 constexpr double long_patience = 600;  // the same for the annealing of eight holes
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 // --- meshes
 // --------------------------------------------------------------------------------------------------------
 
 double uniform(std::mt19937& random) { return random() * 0x1p-32; }
-
-std::vector<BoundaryLoop> loops_of(const TriangleMesh& mesh) {
-  return trace_boundary_loops(mesh, build_topology(mesh));
-}
 
 std::vector<Vector3> points(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   std::vector<Vector3> list;
@@ -200,12 +196,6 @@ std::vector<double> values(const std::vector<Sample>& samples, double Sample::*v
   return list;
 }
 
-double median(std::vector<double> list) {
-  std::sort(list.begin(), list.end());
-  const std::size_t half = list.size() / 2;
-  return list.size() % 2 ? list[half] : 0.5 * (list[half - 1] + list[half]);
-}
-
 // --- tables
 // --------------------------------------------------------------------------------------------------------
 
@@ -295,8 +285,6 @@ void hole_lines(const std::string& model, const TriangleMesh& mesh) {
   }
   table_line(all);
 }
-
-std::string file_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
 void table_one(const std::vector<std::string>& files) {
   std::printf(
@@ -464,12 +452,6 @@ TriangleMesh large_with_holes(TriangleMesh mesh) {
     if (cut) mesh = cut->mesh;
   }
   return mesh;
-}
-
-std::string load_average() {
-  std::ifstream file("/proc/loadavg");
-  std::string one;
-  return file >> one ? one : "unknown";
 }
 
 /// The filter and CGAL by turns on the same mesh in memory.

@@ -19,10 +19,13 @@
 
 namespace meshcomplete {
 
-/// What the cut makes small (paper, section 4.2).
+/// What the cut makes small (paper, section 4.2). Volumes grow with the distance from the rims, so that the
+/// middle of a wide gap has few faces: the less a face's area counts, the rather the patch goes on across a
+/// gap instead of closing each side of it by itself.
 enum class CutWeight {
-  area,  ///< the area of the patch
-  unit,  ///< the number of its faces
+  area,      ///< the area of the patch
+  unit,      ///< the number of its faces
+  balanced,  ///< in between: the fourth roots of the areas of its faces
 };
 
 /// How the stairs of the octree are taken out of a patch before it is faired (paper, section 5).
@@ -57,14 +60,14 @@ struct AtomicVolumesOptions {
   std::optional<int> max_depth;  ///< of the octree, 3 to 30; absent: as deep as the mesh needs
   std::size_t node_budget =
       5000000;  ///< graph nodes and octree leaves, at least 1000; beyond them CompletionError
-  CutWeight weight = CutWeight::area;
+  CutWeight weight = CutWeight::balanced;
   int shifts = 3;          ///< octrees tried, 1 to 100; the patch of least area is kept
   std::uint64_t seed = 1;  ///< of the octrees' random positions
   VolumeSmoothing smoothing = VolumeSmoothing::constrained;
   int smoothing_iterations = 20;  ///< 0 to 1000
   bool moving_centres = false;    ///< the volumes' centres follow their volumes while smoothing (section 7)
   bool remesh = true;             ///< give the patch the resolution of the mesh round the hole
-  std::optional<SurfaceEnergy> fairing = SurfaceEnergy::thin_plate;  ///< absent: none
+  std::optional<SurfaceEnergy> fairing = SurfaceEnergy::normal_variation;  ///< absent: none
   std::optional<double>
       edge_length;  ///< of the patch's edges, mesh units, positive; absent: as the mesh around
 };
@@ -77,7 +80,7 @@ struct AtomicVolumesFigures {
   int depth = 0;                 ///< of the smallest leaf
   double smallest_leaf = 0;      ///< its side, mesh units
   double smallest_distance = 0;  ///< between two vertices of the boundary, mesh units
-  double cut_weight = 0;         ///< of the minimum cut, mesh units squared for `CutWeight::area`
+  double cut_weight = 0;         ///< of the minimum cut: mesh units squared, faces, or roots of mesh units
   int restarts = 0;              ///< because a plane of the octree met a vertex, or two lines met in a point
 };
 

@@ -174,7 +174,7 @@ void Tier::carve(const Progress& progress) {
 void Tier::tie_hints(const std::vector<Vector3>& points, bool inside, const Progress& progress) {
   if (points.empty()) return;
   double price = constraints_.given().hint_price * constraints_.diagonal() * constraints_.diagonal();
-  if (weight_ == CutWeight::unit) price /= faces_.mean_area;
+  if (weight_ != CutWeight::area) price *= faces_.mean_cost / faces_.mean_area;
   for (const VolumePlace& place : places_of(points, progress))
     if (place.kind == VolumePlace::free) result_.ties.push_back({place.node, inside, price});
 }

@@ -79,10 +79,9 @@ struct TiedConstraints {
 
 /// What the constraints mean for the complex. A point ties the volume that holds it; where the mesh decides
 /// already it is satisfied, or noted as contradicted. A volume that is seen through is outside, unless it
-/// holds an inside point: the user set that by hand, and scans have noise. Hints have a price; it is in mesh
-/// units squared, or a number of faces for `CutWeight::unit` (for points as many as have that area on
-/// average). Deterministic. Cost: O(points * log faces + lines * leaves passed + nodes * images under
-/// symmetries * log faces), threaded.
+/// holds an inside point: the user set that by hand, and scans have noise. Hints have a price, in what faces
+/// cost (for points what as many faces cost as have that area on average). Deterministic. Cost: O(points *
+/// log faces + lines * leaves passed + nodes * images under symmetries * log faces), threaded.
 TiedConstraints tie_constraints(const LatticeMesh& mesh, const Decomposition& decomposition,
                                 const VolumeComplex& complex, CutWeight weight,
                                 const PreparedConstraints& constraints,

@@ -122,6 +122,7 @@ Verdict Decomposer::judge(const Pending& pending) const {
   if (verdict.volume.triangles.empty()) return verdict;
   std::sort(verdict.volume.triangles.begin(), verdict.volume.triangles.end());
   verdict.volume.kind = VolumeKind::crossed;
+  if (box.high[0] - box.low[0] <= options_.least_contradiction) return verdict;
   if (sides_agree(mesh_, verdict.volume.triangles, box)) return verdict;
   verdict.split = !last;
   if (last) verdict.volume.kind = VolumeKind::unresolved;

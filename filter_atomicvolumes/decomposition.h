@@ -30,6 +30,9 @@ struct Volume {
 struct DecompositionOptions {
   int max_depth = Lattice::depth;
   std::size_t cube_budget = 5000000;
+  /// Crossed cubes no larger than this are taken as they are, whatever the pieces of the mesh in them say of
+  /// each other: sheets so close to each other, away from the boundary, do not matter to the patch.
+  std::int64_t least_contradiction = 0;  ///< lattice units
 };
 
 struct Decomposition {

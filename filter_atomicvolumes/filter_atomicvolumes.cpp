@@ -39,10 +39,13 @@ std::vector<ParameterDeclaration> cut_parameters() {
       integer_parameter("NodeBudget", "Most volumes",
                         "The filter stops with a message when it would need more volumes than this.",
                         "volumes", 5000000, 1000, any),
-      choice_parameter("Weight", "Make small", "What there is as little of as possible in the new surface.",
-                       {"Area", "Number of faces"}),
+      choice_parameter(
+          "Weight", "Make small",
+          "What there is as little of as possible. Area: caps rather than bridges. Number of faces: "
+          "bridges rather than caps. Balanced: in between.",
+          {"Balanced", "Area", "Number of faces"}),
       integer_parameter("Shifts", "Divisions tried",
-                        "So many randomly placed divisions of space are tried; the least area wins.",
+                        "So many randomly placed divisions of space are tried; the smallest result wins.",
                         "divisions", 3, 1, 100),
       integer_parameter("Seed", "Seed", "Start of the random numbers.", "", 1, 0, any)};
 }
@@ -90,7 +93,7 @@ std::vector<ParameterDeclaration> smoothing_parameters() {
       choice_parameter("Fairing", "Fairing",
                        "What the new surface minimises in the end. Thin plate: bending, continues the mesh "
                        "smoothly. Membrane: area. Normal variation: the change of the normals.",
-                       {"Thin plate", "Membrane", "Normal variation", "None"}),
+                       {"Thin plate", "Membrane", "Normal variation", "None"}, 2),
       length_parameter("EdgeLength", "Edge length",
                        "Length of the new edges. 0: as in the mesh around. A percentage is of the bounding "
                        "box's diagonal.")};
@@ -107,7 +110,8 @@ AtomicVolumesOptions options_from(const ParameterValues& values) {
     throw CompletionError(stage, "Parameter \"MaxDepth\" must be 0, for any depth, or at least 3.");
   if (depth > 0) options.max_depth = depth;
   options.node_budget = static_cast<std::size_t>(values.integer("NodeBudget"));
-  options.weight = values.choice("Weight") == 0 ? CutWeight::area : CutWeight::unit;
+  constexpr CutWeight weights[] = {CutWeight::balanced, CutWeight::area, CutWeight::unit};
+  options.weight = weights[values.choice("Weight")];
   options.shifts = values.integer("Shifts");
   options.seed = static_cast<std::uint64_t>(values.integer("Seed"));
   options.constraints.hint_price = values.real("HintPrice");

@@ -14,8 +14,9 @@
 namespace meshcomplete {
 namespace {
 
-// After two solves with remeshing in between the triangles no longer change much.
-constexpr int solves = 2;
+// After four solves with remeshing in between the shape no longer changes; two are too few when the first one
+// starts from coarse stairs.
+constexpr int solves = 4;
 constexpr int rounds_between = 3;
 
 // Guarded steps towards the fair surface.

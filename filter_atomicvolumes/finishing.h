@@ -18,8 +18,8 @@ namespace meshcomplete {
 
 struct FinishingOptions {
   bool remesh = true;  ///< give it the resolution of the mesh around
-  std::optional<SurfaceEnergy> fairing = SurfaceEnergy::thin_plate;  ///< absent: none
-  std::optional<double> edge_length;                                 ///< absent: as the mesh around
+  std::optional<SurfaceEnergy> fairing = SurfaceEnergy::normal_variation;  ///< absent: none
+  std::optional<double> edge_length;                                       ///< absent: as the mesh around
 };
 
 /// What a patch is finished against.

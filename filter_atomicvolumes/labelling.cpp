@@ -7,12 +7,20 @@
 namespace meshcomplete {
 namespace {
 
-// Areas are counted in this share of the root's face. All faces together have a few hundred times the area of
-// the root's, which stays below what counts as infinite.
-constexpr double area_units = static_cast<double>(std::int64_t{1} << 40);
-
-// Numbers of faces in this share of a face: prices need not be whole.
-constexpr double face_units = 1024;
+// What faces cost is counted in this share of what the root's face would. All faces together have a few
+// hundred times the area of the root's, and as many times its cost as there are faces at most, which stays
+// below what counts as infinite.
+double units(CutWeight weight) {
+  switch (weight) {
+    case CutWeight::area:
+      return static_cast<double>(std::int64_t{1} << 40);
+    case CutWeight::balanced:
+      return static_cast<double>(std::int64_t{1} << 28);
+    case CutWeight::unit:
+      break;
+  }
+  return 1024;  // prices need not be whole
+}
 
 double area_of(const VolumeComplex& complex, const VolumeFace& face) {
   const Vector3& p = complex.vertices[face.corners[0]].position;
@@ -31,22 +39,21 @@ class GraphBuilder {
   GraphBuilder(const LatticeMesh& mesh, const VolumeComplex& complex, CutWeight weight)
       : mesh_(mesh),
         complex_(complex),
-        by_area_(weight == CutWeight::area),
-        scale_(by_area_ ? area_units / (mesh.lattice.side() * mesh.lattice.side()) : face_units),
+        weight_(weight),
+        scale_(units(weight) / cost_of_face(weight, mesh.lattice.side() * mesh.lattice.side())),
         graph_(complex.nodes, complex.faces.size() + complex.whole_squares.size()) {}
 
   Labelling cut(const std::vector<NodeTie>& ties);
 
  private:
   GraphCut::Capacity capacity(double area) const {
-    if (!by_area_) return static_cast<GraphCut::Capacity>(face_units);
-    return std::max<GraphCut::Capacity>(1, std::llround(area * scale_));
+    return std::max<GraphCut::Capacity>(1, std::llround(cost_of_face(weight_, area) * scale_));
   }
   void add(Cell a, Cell b, double area);
 
   const LatticeMesh& mesh_;
   const VolumeComplex& complex_;
-  const bool by_area_;
+  const CutWeight weight_;
   const double scale_;
   GraphCut graph_;
 };
@@ -79,19 +86,35 @@ Labelling GraphBuilder::cut(const std::vector<NodeTie>& ties) {
 
 }  // namespace
 
+double cost_of_face(CutWeight weight, double area) {
+  switch (weight) {
+    case CutWeight::area:
+      return area;
+    case CutWeight::balanced:
+      return std::sqrt(std::sqrt(area));
+    case CutWeight::unit:
+      break;
+  }
+  return 1;
+}
+
 FaceMeasure measure_faces(const LatticeMesh& mesh, const VolumeComplex& complex, CutWeight weight) {
   FaceMeasure measure;
   measure.of_node.assign(complex.nodes, 0);
-  double total = 0;
+  double area_in_all = 0, cost_in_all = 0;
   const auto add = [&](Cell behind, Cell before, double area) {
-    total += area;
+    const double cost = cost_of_face(weight, area);
+    area_in_all += area;
+    cost_in_all += cost;
     for (Cell cell : {behind, before})
-      if (cell >= 0) measure.of_node[static_cast<std::size_t>(cell)] += weight == CutWeight::area ? area : 1;
+      if (cell >= 0) measure.of_node[static_cast<std::size_t>(cell)] += cost;
   };
   for (const VolumeFace& face : complex.faces) add(face.behind, face.before, area_of(complex, face));
   for (const VolumeSquare& s : complex.whole_squares) add(s.behind, s.before, area_of(mesh, complex, s));
-  const std::size_t count = complex.faces.size() + complex.whole_squares.size();
-  if (count > 0) measure.mean_area = total / static_cast<double>(count);
+  if (const std::size_t count = complex.faces.size() + complex.whole_squares.size(); count > 0) {
+    measure.mean_area = area_in_all / static_cast<double>(count);
+    measure.mean_cost = cost_in_all / static_cast<double>(count);
+  }
   return measure;
 }
 

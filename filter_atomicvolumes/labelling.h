@@ -15,22 +15,25 @@ namespace meshcomplete {
 struct NodeTie {
   Cell node;
   bool inside;
-  double price;  ///< mesh units squared, or a number of faces for the unit weight; infinite for a constraint
+  double price;  ///< in what `cost_of_face` counts; infinite for a constraint
 };
 
 struct Labelling {
   std::vector<char> inside;  ///< per node
-  double weight = 0;  ///< of the cut: mesh units squared for areas, a number of faces for the unit weight
+  double weight = 0;         ///< of the cut: the sum of what its faces cost
 
   bool is_inside(Cell cell) const {
     return cell >= 0 ? inside[static_cast<std::size_t>(cell)] : cell == inside_cell;
   }
 };
 
+/// What a face of this area, in mesh units squared, costs the cut.
+double cost_of_face(CutWeight weight, double area);
+
 /// What the faces of volumes come to.
 struct FaceMeasure {
-  std::vector<double> of_node;  ///< per node: the area of its faces, mesh units squared, or their number
-  double mean_area = 1;         ///< of a face, mesh units squared
+  std::vector<double> of_node;          ///< per node: what its faces cost
+  double mean_area = 1, mean_cost = 1;  ///< of a face, mesh units squared and what it costs
 };
 
 /// As the cut counts them: a square between two cubes is one face. Cost: O(faces).

@@ -29,6 +29,10 @@ constexpr int most_restarts = 20;
 // square between the cubes is left to the patch.
 constexpr int most_refinements = 8;
 
+// Sheets that contradict each other are told apart down to cubes of this share of the shortest edge of the
+// boundary: what is smaller is no matter of the patch, and sheets that lie on each other would have no end.
+constexpr double closest_contradiction = 0.25;
+
 // A uniform number from 0 to 1, the same on every platform.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
@@ -95,6 +99,9 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
   DecompositionOptions division;
   division.max_depth = options.max_depth.value_or(Lattice::depth);
   division.cube_budget = options.node_budget;
+  division.least_contradiction = static_cast<std::int64_t>(
+      closest_contradiction * shortest_distance(solution.mesh.mesh, solution.mesh.topology) /
+      solution.mesh.lattice.step());
   Decomposition& octree = solution.decomposition;
   octree = decompose(solution.mesh, division, progress.part(0, 0.3, stage));
   if (!constraints.empty())
@@ -106,7 +113,14 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
     if (!constraints.empty())
       tied = tie_constraints(solution.mesh, octree, solution.complex, options.weight, constraints, progress);
     if (i == most_refinements) break;
-    bool split = split_further(octree, solution.mesh, division, solution.complex.disagreeing);
+    std::vector<Index> disagreeing = solution.complex.disagreeing;
+    disagreeing.erase(std::remove_if(disagreeing.begin(), disagreeing.end(),
+                                     [&](Index cube) {
+                                       return Octree::side(octree.octree[cube].depth) <=
+                                              division.least_contradiction;
+                                     }),
+                      disagreeing.end());
+    bool split = split_further(octree, solution.mesh, division, disagreeing);
     if (!tied.split.empty())
       split |= refine_for_constraints(octree, solution.mesh, division, constraints, tied.split, progress);
     if (!split) break;

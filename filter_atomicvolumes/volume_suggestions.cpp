@@ -23,7 +23,7 @@ class Suggester {
 
   std::vector<NodeTie> run(const Progress& progress) {
     relax(progress);
-    if (options_.weight == CutWeight::unit) faces_ = measure_faces(mesh_, complex_, options_.weight);
+    if (options_.weight != CutWeight::area) faces_ = measure_faces(mesh_, complex_, options_.weight);
     progress.update(0.5);
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
       if (t % 256 == 0) progress.check();
@@ -59,7 +59,7 @@ class Suggester {
   const VolumeSmoothingOptions& options_;
   std::vector<Vector3> positions_;
   std::map<Cell, Sight> sights_;
-  FaceMeasure faces_;  // for the unit weight
+  FaceMeasure faces_;  // for weights other than the area
 };
 
 void Suggester::relax(const Progress& progress) {
