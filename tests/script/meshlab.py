@@ -31,7 +31,7 @@ FILTERS = {
         ("RichPoint3f", "SymmetryPoint", "0 0 0"), ("RichPoint3f", "SymmetryDirection", "1 0 0"),
         ("RichInt", "SymmetryFold", "2"), ("RichFloat", "SymmetryPrice", "0.5"), ("RichEnum", "Smoothing", "1"),
         ("RichInt", "SmoothingIterations", "5"), ("RichBool", "MovingCentres", "false"), ("RichBool", "Remesh", "true"),
-        ("RichEnum", "Fairing", "0"), ("RichAbsPerc", "EdgeLength", "0")],
+        ("RichEnum", "Fairing", "2"), ("RichAbsPerc", "EdgeLength", "0")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select Border": [],
