@@ -315,8 +315,12 @@ std::vector<Sheet> Splitter::pieces() const {
       sheet.flaw = Sheet::Flaw::open;
     else
       sheet.closes.push_back(rim_[h]);
-    const Index v = triangles_[h / 3][h % 3];
-    if (joined_[v] && sheet.flaw == Sheet::Flaw::none) sheet.flaw = Sheet::Flaw::joins_vertices;
+  }
+  // Middles, which are the last vertices, join nothing.
+  for (Index v = 0; v < joined_.size(); ++v) {
+    if (!joined_[v]) continue;
+    Sheet& sheet = sheets[sheet_of[find(v)]];
+    if (sheet.flaw == Sheet::Flaw::none) sheet.flaw = Sheet::Flaw::joins_vertices;
   }
   for (Sheet& sheet : sheets) {
     std::sort(sheet.closes.begin(), sheet.closes.end());
