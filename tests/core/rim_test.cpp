@@ -259,15 +259,17 @@ TEST(Rim, AVertexInTwoLoopsIsThereTwice) {
 // Chords over more than sixteen edges do not come up, and would be many.
 TEST(Rim, LongChordsAreNotListed) {
   const TriangleMesh mesh = test::sphere_with_touching_holes(2);
-  std::vector<BoundaryLoop> loops = loops_of(mesh);
-  TriangleMesh tube = test::translated(test::open_cylinder(5, 1, 0.2, 0.2), Vector3(0, 0, 30));
-  const TriangleMesh all = test::join(mesh, tube);
-  const std::vector<BoundaryLoop> more = loops_of(all);
-  ASSERT_EQ(more.size(), loops.size() + 2);
-  expect_rim_of_loops(all, more);
-  const std::size_t edges = collect_rim(mesh, build_topology(mesh), loops).forbidden.size();
-  EXPECT_EQ(collect_rim(all, build_topology(all), more).forbidden.size(), edges + 10)
-      << "only the tube's own, between its two rims";
+  const std::size_t edges = collect_rim(mesh, build_topology(mesh), loops_of(mesh)).forbidden.size();
+  for (const double away : {2.5, 30.0}) {
+    const TriangleMesh tube = test::translated(test::open_cylinder(5, 1, 0.2, 0.2), Vector3(0, 0, away));
+    const TriangleMesh both = test::join(mesh, tube);
+    const std::vector<BoundaryLoop> loops = loops_of(both);
+    ASSERT_EQ(loops.size(), 4u);
+    expect_rim_of_loops(both, loops);
+    // Those of the tube between its own rims, and to the tube's vertices from the two places.
+    EXPECT_EQ(collect_rim(both, build_topology(both), loops).forbidden.size(),
+              edges + 10 + (away < 3 ? 20 : 0));
+  }
 }
 
 // --- obstructed edges
