@@ -184,6 +184,38 @@ TEST(Decomposition, TouchingSheetsStopWithinTheBudget) {
   EXPECT_EQ(deepest, Lattice::depth);
 }
 
+/// A sphere with a hole, and two cubes beside it that lie on each other with one face each.
+TriangleMesh sheets_back_to_back() {
+  const TriangleMesh cubes =
+      test::join(test::cube(0.5, Vector3(1.5, 0, 0)), test::cube(0.5, Vector3(2, 0, 0)));
+  return test::join(test::sphere_with_hole(2, 0.6), cubes);
+}
+
+// No cube tells two sheets apart that lie on each other, however small it is. Where no rim is near, that does
+// not matter to the patch.
+TEST(Decomposition, SheetsBackToBackFarFromTheRimsAreNotTakenApart) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const PlacedMesh placed(sheets_back_to_back(), seed);
+    DecompositionOptions options;
+    options.cube_budget = 40000;
+    EXPECT_THROW(decompose(placed.lattice_mesh, options), CompletionError) << "the octree goes on for ever";
+    options.least_contradiction = Octree::side(9);
+    const Decomposition d = decompose(placed.lattice_mesh, options);
+    int contradicting = 0;
+    for (Index cube = 0; cube < d.octree.size(); ++cube) {
+      if (!d.octree.is_leaf(cube)) continue;
+      const Verdict verdict = judge(placed.lattice_mesh, d.octree.box(cube));
+      EXPECT_EQ(d.volumes[cube].kind, verdict.volume.kind);
+      EXPECT_EQ(d.volumes[cube].triangles, verdict.volume.triangles);
+      if (verdict.trivial) continue;
+      ++contradicting;
+      EXPECT_EQ(verdict.volume.kind, VolumeKind::crossed) << "cubes at rims are always split";
+      EXPECT_EQ(d.octree[cube].depth, 9) << "not before it is small enough";
+    }
+    EXPECT_GT(contradicting, 100);
+  }
+}
+
 // A cylinder in the middle of a root that is shifted at random: no plane of the octree runs along its sides.
 TEST(Decomposition, ASymmetricCylinderStaysShallow) {
   TriangleMesh mesh = test::translated(test::open_cylinder(24, 4), Vector3(0, 0, -1));

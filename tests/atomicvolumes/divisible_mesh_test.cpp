@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -180,34 +179,10 @@ TEST(DivisibleMesh, FacesWithoutAreaAtARimAreLeftOut) {
   EXPECT_EQ(divisible(ear), nullptr);
 }
 
-/// A sphere whose upper pole is two vertices, each with five faces: between them two opposite faces are
-/// missing, so that two holes touch there.
-struct SplitPole {
-  TriangleMesh mesh = test::uv_sphere(8, 12);
-  Index original = 0, copy = static_cast<Index>(mesh.vertices.size());
-
-  SplitPole() {
-    while (mesh.vertices[original][2] < 0.999) ++original;
-    mesh.vertices.push_back(mesh.vertices[original]);
-    for (Triangle& t : mesh.triangles) {
-      if (std::count(t.begin(), t.end(), original) == 0) continue;
-      const Vector3 middle = mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]];
-      const double angle = std::atan2(middle[1], middle[0]) * 180 / 3.14159265;
-      if ((0 < angle && angle < 30) || angle < -150)
-        t.fill(original);
-      else if (angle > 0)
-        std::replace(t.begin(), t.end(), original, copy);
-    }
-    const auto repeats = [](const Triangle& t) { return t[0] == t[1]; };
-    mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), repeats),
-                         mesh.triangles.end());
-  }
-};
-
 bool has(const Triangle& t, Index vertex) { return std::count(t.begin(), t.end(), vertex) != 0; }
 
 TEST(DivisibleMesh, RimVerticesAtTheSamePositionAreOne) {
-  const SplitPole pole;
+  const test::SplitPole pole;
   const TriangleMesh& mesh = pole.mesh;
   const auto result = divisible(mesh);
   ASSERT_NE(result, nullptr);
@@ -231,7 +206,7 @@ TEST(DivisibleMesh, RimVerticesAtTheSamePositionAreOne) {
 
 // Faces of the two fans that meet each other have no vertex in common, but one at the same position.
 TEST(DivisibleMesh, FacesThatMeetAtCoincidentVerticesAreFound) {
-  const SplitPole pole;
+  const test::SplitPole pole;
   const Rims rims(pole.mesh);
   std::size_t found = 0;
   for (const Triangle& near : pole.mesh.triangles)
@@ -258,7 +233,7 @@ TEST(DivisibleMesh, FacesThatMeetAtCoincidentVerticesAreFound) {
 }
 
 TEST(DivisibleMesh, CanBeCancelled) {
-  const TriangleMesh mesh = SplitPole().mesh;
+  const TriangleMesh mesh = test::SplitPole().mesh;
   EXPECT_THROW(make_divisible(mesh, build_topology(mesh), InputNeighbourhood(mesh),
                               Progress([](double, const std::string&) { return false; })),
                Cancelled);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -120,6 +121,30 @@ inline TriangleMesh shell_with_hole(bool hole_within) {
   const TriangleMesh inner = hole_within ? sphere_with_hole(2, 0.7) : icosphere(2);
   return join(outer, flipped(scaled(inner, 0.5)));
 }
+
+/// A sphere whose upper pole is two vertices, each with five faces: between them two opposite faces are
+/// missing, so that two holes touch there.
+struct SplitPole {
+  TriangleMesh mesh = uv_sphere(8, 12);
+  Index original = 0, copy = static_cast<Index>(mesh.vertices.size());
+
+  SplitPole() {
+    while (mesh.vertices[original][2] < 0.999) ++original;
+    mesh.vertices.push_back(mesh.vertices[original]);
+    for (Triangle& t : mesh.triangles) {
+      if (std::count(t.begin(), t.end(), original) == 0) continue;
+      const Vector3 middle = mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]];
+      const double angle = std::atan2(middle[1], middle[0]) * 180 / 3.14159265;
+      if ((0 < angle && angle < 30) || angle < -150)
+        t.fill(original);
+      else if (angle > 0)
+        std::replace(t.begin(), t.end(), original, copy);
+    }
+    const auto repeats = [](const Triangle& t) { return t[0] == t[1]; };
+    mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), repeats),
+                         mesh.triangles.end());
+  }
+};
 
 struct NamedMesh {
   std::string name;
