@@ -1,11 +1,13 @@
 #include "filter_atomicvolumes/atomic_volumes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -20,6 +22,7 @@
 #include "filter_atomicvolumes/patch_pieces.h"
 #include "filter_atomicvolumes/piece_finishing.h"
 #include "filter_atomicvolumes/sheets.h"
+#include "filter_atomicvolumes/threads.h"
 #include "filter_atomicvolumes/volume_solution.h"
 
 namespace meshcomplete {
@@ -31,6 +34,9 @@ void require(bool condition, const char* message) {
 
 // Octrees more that are tried for holes that the best one left open.
 constexpr int most_retries = 2;
+
+// Of meshes with longer boundaries several octrees take too much memory.
+constexpr std::size_t most_edges_at_once = 10000;
 
 std::string describe(Sheet::Flaw flaw) {
   switch (flaw) {
@@ -44,6 +50,15 @@ std::string describe(Sheet::Flaw flaw) {
              "'Merge Close Vertices' first";
   }
   return "";
+}
+
+double area(const LabelledSurface& surface) {
+  double twice = 0;
+  for (const Triangle& t : surface.triangles) {
+    const Vector3& p = surface.vertices[t[0]].position;
+    twice += (surface.vertices[t[1]].position - p).cross(surface.vertices[t[2]].position - p).norm();
+  }
+  return 0.5 * twice;
 }
 
 // Wall seconds between the ends of stages.
@@ -150,20 +165,31 @@ std::size_t Run::flawed_edges(const VolumeSolution& solution) const {
   return edges;
 }
 
-// Of several octrees that whose patch can be used for most holes, and of these that with the patch of least
-// area.
+// Of several octrees that whose patch can be used for most holes, and of these the one with the patch of
+// least area, or, with hints, of least weight: other weights of different octrees cannot be compared. In
+// threads.
 VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const Progress& progress) const {
+  const std::size_t shifts = static_cast<std::size_t>(options_.shifts);
+  std::mutex mutex;
   std::optional<VolumeSolution> best;
-  std::size_t least = 0;
-  for (int shift = 0; shift < options_.shifts; ++shift) {
-    const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
-    VolumeSolution one = solve(shift, constraints, progress.part(from, to, "dividing space"));
-    const std::size_t flawed = options_.shifts > 1 ? flawed_edges(one) : 0;
-    if (best && std::tie(least, best->labelling.weight) <= std::tie(flawed, one.labelling.weight)) continue;
-    least = flawed;
-    best.reset();
-    best.emplace(std::move(one));
-  }
+  using Rank = std::tuple<std::size_t, double, std::size_t>;
+  Rank least;
+  // Large octrees one after the other, for the memory's sake: most of the work on each is in threads already.
+  const std::size_t grain = topology_.boundary_half_edges.size() > most_edges_at_once ? shifts : 1;
+  for_ranges(shifts, grain, progress, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t shift = begin; shift < end; ++shift) {
+      const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
+      VolumeSolution one =
+          solve(static_cast<int>(shift), constraints, progress.part(from, to, "dividing space"));
+      const Rank rank(shifts > 1 ? flawed_edges(one) : 0,
+                      one.ties.empty() ? area(one.surface) : one.labelling.weight, shift);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (best && least < rank) continue;
+      least = rank;
+      best.reset();
+      best.emplace(std::move(one));
+    }
+  });
   smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
   return std::move(*best);
 }

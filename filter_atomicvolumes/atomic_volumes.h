@@ -64,7 +64,7 @@ struct AtomicVolumesOptions {
   int shifts = 3;          ///< octrees tried, 1 to 100; the patch of least area is kept
   std::uint64_t seed = 1;  ///< of the octrees' random positions
   VolumeSmoothing smoothing = VolumeSmoothing::constrained;
-  int smoothing_iterations = 20;  ///< 0 to 1000
+  int smoothing_iterations = 5;  ///< 0 to 1000
   bool moving_centres = false;    ///< the volumes' centres follow their volumes while smoothing (section 7)
   bool remesh = true;             ///< give the patch the resolution of the mesh round the hole
   std::optional<SurfaceEnergy> fairing = SurfaceEnergy::normal_variation;  ///< absent: none

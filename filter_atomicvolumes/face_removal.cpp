@@ -67,6 +67,8 @@ std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Pro
   return rims;
 }
 
+// By the mesh itself, also where faces intersect or vertices touch: those are in the way, too, and without
+// them the completion needs no other mesh to divide space by.
 std::vector<Index> Remover::offending(const Progress& progress) const {
   const TriangleMesh& mesh = removal_.mesh;
   const MeshTopology topology = build_topology(mesh, progress);

@@ -86,7 +86,7 @@ std::vector<ParameterDeclaration> smoothing_parameters() {
                        "sides. Two passes: freely, then cut anew near the result, then constrained.",
                        {"None", "Constrained", "Two passes"}, 1),
       integer_parameter("SmoothingIterations", "Smoothing steps", "How often each new vertex is moved.",
-                        "steps", 20, 0, 1000),
+                        "steps", 5, 0, 1000),
       switch_parameter("MovingCentres", "Moving centres", "Centres move with their volumes while smoothing.",
                        false),
       switch_parameter("Remesh", "Remesh", "Makes the new faces as large as those around.", true),

@@ -84,9 +84,10 @@ std::vector<PieceFinisher::Corners> PieceFinisher::obstacles_of(const std::vecto
   Box box;
   for (const SheetVertex& v : pieces[piece].sheet.vertices)
     box.include(bounding_box(v.position, v.position, v.position));
-  // A fair surface bulges over the stairs by less than their extent.
+  // A fair surface bulges over the stairs by less than their extent, also where they are flat.
+  double size = 0;
+  for (int k = 0; k < 3; ++k) size = std::max(size, box.high[k] - box.low[k]);
   for (int k = 0; k < 3; ++k) {
-    const double size = box.high[k] - box.low[k];
     box.low[k] -= size;
     box.high[k] += size;
   }

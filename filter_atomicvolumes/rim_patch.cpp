@@ -1,6 +1,7 @@
 #include "filter_atomicvolumes/rim_patch.h"
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -16,6 +17,9 @@ constexpr int most_passes = 16;
 
 // How far from a Steiner point vertices are relaxed to make room.
 constexpr int relaxed_rings = 2;
+
+// Edges shorter than so many times the resolution of what is stored are rounded with care.
+constexpr double least_stored_edge = 64;
 
 // The smallest part of the way into the patch by which a Steiner point is taken off its edge.
 constexpr double smallest_lift = 1e-4;
@@ -56,6 +60,22 @@ std::unordered_map<std::uint64_t, Index> faces_at_boundary(const TriangleMesh& m
     faces[static_cast<std::uint64_t>(t[(h % 3 + 1) % 3]) << 32 | t[h % 3]] = h / 3;
   }
   return faces;
+}
+
+// Which vertices have neighbours so close that rounding to what will be stored can turn triangles over: where
+// planes cut convex cells all of them, else those at very short edges.
+std::vector<char> finer_than_stored(const Sheet& sheet) {
+  const bool cut = std::any_of(sheet.vertices.begin(), sheet.vertices.end(),
+                               [](const SheetVertex& one) { return one.cut; });
+  std::vector<char> fine(sheet.vertices.size(), cut);
+  if (cut) return fine;
+  for (const Triangle& t : sheet.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Vector3 &a = sheet.vertices[t[k]].position, &b = sheet.vertices[t[(k + 1) % 3]].position;
+      const double resolution = a.cwiseAbs().maxCoeff() * std::numeric_limits<float>::epsilon();
+      if ((b - a).norm() < least_stored_edge * resolution) fine[t[k]] = fine[t[(k + 1) % 3]] = 1;
+    }
+  return fine;
 }
 
 class SteinerRemover {
@@ -271,12 +291,11 @@ RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, 
     }
   // What will stay is rounded to what will be stored; Steiner points are as exact as they can be, and so is
   // all that may be finer than what can be stored.
-  const bool fine = std::any_of(sheet.vertices.begin(), sheet.vertices.end(),
-                                [](const SheetVertex& one) { return one.cut; });
+  const std::vector<char> fine = finer_than_stored(sheet);
   std::vector<Vector3> positions;
   for (Index v : order) {
     const SheetVertex& one = sheet.vertices[v];
-    positions.push_back(one.input == SheetVertex::none && one.rim_edge == SheetVertex::none && !fine
+    positions.push_back(one.input == SheetVertex::none && one.rim_edge == SheetVertex::none && !fine[v]
                             ? as_stored(one.position)
                             : one.position);
   }

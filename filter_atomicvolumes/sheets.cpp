@@ -315,8 +315,11 @@ std::vector<Sheet> Splitter::pieces() const {
       sheet.flaw = Sheet::Flaw::open;
     else
       sheet.closes.push_back(rim_[h]);
-    const Index v = triangles_[h / 3][h % 3];
-    if (joined_[v] && sheet.flaw == Sheet::Flaw::none) sheet.flaw = Sheet::Flaw::joins_vertices;
+  }
+  for (Index v = 0; v < joined_.size(); ++v) {
+    if (!joined_[v] || sheet_of[find(v)] == none) continue;
+    Sheet::Flaw& flaw = sheets[sheet_of[find(v)]].flaw;
+    if (flaw == Sheet::Flaw::none) flaw = Sheet::Flaw::joins_vertices;
   }
   for (Sheet& sheet : sheets) {
     std::sort(sheet.closes.begin(), sheet.closes.end());

@@ -25,6 +25,11 @@ constexpr double margin = 0.05;
 // meshes that are degenerate themselves.
 constexpr int most_restarts = 20;
 
+// Cubes of fewer steps of what can be stored make faces that cannot: so often another position is tried then,
+// unless the mesh itself has vertices that close.
+constexpr int most_fine_restarts = 3;
+constexpr double least_steps = 8;
+
 // Crossed cubes that disagree, and volumes with contradicting constraints, are split so often; then the
 // square between the cubes is left to the patch.
 constexpr int most_refinements = 8;
@@ -60,6 +65,21 @@ double shortest_distance(const TriangleMesh& mesh, const MeshTopology& topology)
   return shortest;
 }
 
+double smallest_leaf(const VolumeSolution& solution) {
+  int depth = 0;
+  const Octree& octree = solution.decomposition.octree;
+  for (Index cube = 0; cube < octree.size(); ++cube) depth = std::max(depth, octree[cube].depth);
+  return solution.mesh.lattice.step() * static_cast<double>(Octree::side(depth));
+}
+
+// The smallest cube in which the faces of volumes can be stored.
+double least_leaf(const TriangleMesh& mesh) {
+  double most = 0;
+  for (const Vector3& p : mesh.vertices)
+    if (p.allFinite()) most = std::max(most, p.cwiseAbs().maxCoeff());
+  return least_steps * most * std::numeric_limits<float>::epsilon();
+}
+
 void count_leaves(const VolumeSolution& solution, AtomicVolumesFigures& figures) {
   const Octree& octree = solution.decomposition.octree;
   for (Index cube = 0; cube < octree.size(); ++cube) {
@@ -93,9 +113,9 @@ void check_budget(const VolumeComplex& complex, const AtomicVolumesOptions& opti
 }
 
 // Splits cubes until those that only the mesh divides agree with each other, and constraints are told apart;
-// then labels the volumes.
+// then labels the volumes. Cubes smaller than `least` count as a coincidence.
 void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
-           const PreparedConstraints& constraints, const Progress& progress) {
+           const PreparedConstraints& constraints, double least, const Progress& progress) {
   DecompositionOptions division;
   division.max_depth = options.max_depth.value_or(Lattice::depth);
   division.cube_budget = options.node_budget;
@@ -104,6 +124,7 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
       solution.mesh.lattice.step());
   Decomposition& octree = solution.decomposition;
   octree = decompose(solution.mesh, division, progress.part(0, 0.3, stage));
+  if (smallest_leaf(solution) < least) throw Coincidence();
   if (!constraints.empty())
     refine_for_constraints(octree, solution.mesh, division, constraints, {}, progress);
   TiedConstraints tied;
@@ -154,16 +175,18 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
                              const PreparedConstraints& constraints, std::uint64_t seed,
                              const Progress& progress) {
   std::mt19937_64 random(seed);
+  const double distance = shortest_distance(mesh, topology), leaf = least_leaf(mesh);
   for (int restart = 0; restart <= most_restarts; ++restart) {
     VolumeSolution solution{
         {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}, {}};
     try {
-      solve(solution, options, constraints, progress);
+      const bool may_be_fine = restart >= most_fine_restarts || closest_contradiction * distance < leaf;
+      solve(solution, options, constraints, may_be_fine ? 0 : leaf, progress);
     } catch (const Coincidence&) {
       continue;
     }
     count_leaves(solution, solution.figures);
-    solution.figures.smallest_distance = shortest_distance(mesh, topology);
+    solution.figures.smallest_distance = distance;
     solution.figures.restarts = restart;
     return solution;
   }

@@ -43,8 +43,8 @@ atomic() {
 atomic pierced-sphere pierced --from=1,-0.6,0.7 --up=0,0,1 --width=1.1
 atomic gap gap --from=0.35,0.12,-1 --width=0.55 --at=0,-20,0
 atomic island island --from=1,-0.6,1.1 --up=0,0,1 --width=0.8
-atomic outer-half-torus torus --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
-atomic outer-half-torus ring --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
+atomic outer-half-torus torus -p Weight=Area --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
+atomic outer-half-torus ring -p Weight=Area --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
   --with "$work/inside-the-ring.off" -p OutsideLayer=inside-the-ring.off
 rm "$images/atomic-ring-before.png"
 

@@ -121,6 +121,45 @@ TEST(FaceRemoval, HolesOfAllKinds) {
   EXPECT_GT(removed, 0u);
 }
 
+// Two rim vertices at one place, not joined by any face: no cube can hold just one of them.
+TEST(FaceRemoval, OpensWhatTouchesWithoutBeingJoined) {
+  TriangleMesh mesh = test::sphere_with_touching_holes();
+  std::vector<Index> visits(mesh.vertices.size(), 0);
+  const MeshTopology topology = build_topology(mesh);
+  for (Index h : topology.boundary_half_edges) ++visits[mesh.triangles[h / 3][h % 3]];
+  const auto pinch = static_cast<Index>(std::find(visits.begin(), visits.end(), 2) - visits.begin());
+  ASSERT_LT(pinch, mesh.vertices.size());
+  // One of the two fans gets a vertex of its own.
+  const auto first = std::find_if(topology.boundary_half_edges.begin(), topology.boundary_half_edges.end(),
+                                  [&](Index h) { return mesh.triangles[h / 3][h % 3] == pinch; });
+  const auto beginning_at_pinch = [&](Index t) {
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      if (mesh.triangles[t][h % 3] == pinch) return h;
+    return MeshTopology::boundary;
+  };
+  const Index copy = static_cast<Index>(mesh.vertices.size());
+  std::vector<Index> fan;  // half-edges that begin at the pinch
+  for (Index h = *first; h != MeshTopology::boundary;) {
+    fan.push_back(h);
+    const Index across = topology.opposite[3 * (h / 3) + (h % 3 + 2) % 3];
+    h = across == MeshTopology::boundary ? across : beginning_at_pinch(across / 3);
+  }
+  for (Index h : fan) mesh.triangles[h / 3][h % 3] = copy;
+  mesh.vertices.push_back(mesh.vertices[pinch]);
+
+  AtomicVolumesOptions options;
+  options.max_depth = 16;
+  const ReducedCompletion reduced = fill_without_offending_faces(mesh, {}, options);
+  EXPECT_GT(reduced.removed.size(), 0u);
+  EXPECT_LT(reduced.removed.size(), 20u);
+  EXPECT_EQ(reduced.result.completion.report.count(HoleOutcome::closed),
+            reduced.result.completion.report.holes.size());
+  TriangleMesh rest = mesh;
+  for (auto t = reduced.removed.rbegin(); t != reduced.removed.rend(); ++t)
+    rest.triangles.erase(rest.triangles.begin() + *t);
+  EXPECT_TRUE(measure(completed(rest, reduced.result.completion.patch), true).solid());
+}
+
 // Only what is to be closed loses faces; a hole that was asked for stays so when the selected faces go.
 TEST(FaceRemoval, LeavesOtherHolesAlone) {
   const TriangleMesh mesh = pinched_sphere(3, 3);
