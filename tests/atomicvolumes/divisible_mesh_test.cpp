@@ -87,27 +87,6 @@ std::size_t expect_folds_left_out(const TriangleMesh& mesh, const DivisibleMesh&
   return inner;
 }
 
-/// A sphere with a hole, one of the vertices next to the rim pushed through a face not far from it, in many
-/// ways.
-std::vector<TriangleMesh> folded_meshes() {
-  const TriangleMesh sphere = test::sphere_with_hole(2, 0.6);
-  const Rims rims(sphere);
-  std::set<Index> next_to_rim;
-  for (const Triangle& t : sphere.triangles)
-    if (std::any_of(t.begin(), t.end(), [&](Index v) { return rims.vertices.count(v) != 0; }))
-      for (Index v : t)
-        if (rims.vertices.count(v) == 0 && next_to_rim.size() < 8) next_to_rim.insert(v);
-  std::vector<TriangleMesh> meshes;
-  for (Index vertex : next_to_rim)
-    for (const Triangle& t : sphere.triangles) {
-      const Vector3 middle = (sphere.vertices[t[0]] + sphere.vertices[t[1]] + sphere.vertices[t[2]]) / 3;
-      if (std::count(t.begin(), t.end(), vertex) || (middle - sphere.vertices[vertex]).norm() > 0.6) continue;
-      meshes.push_back(sphere);
-      meshes.back().vertices[vertex] = as_stored(1.05 * middle);
-    }
-  return meshes;
-}
-
 TEST(DivisibleMesh, ThereIsNoneWhereTheMeshItselfWillDo) {
   for (const test::NamedMesh& named : test::holed_meshes())
     EXPECT_EQ(divisible(named.mesh), nullptr) << named.name;
@@ -122,7 +101,7 @@ TEST(DivisibleMesh, ThereIsNoneWhereTheMeshItselfWillDo) {
 
 TEST(DivisibleMesh, OfFacesThatMeetAtARimOneIsLeftOut) {
   std::size_t made = 0, inner = 0, number = 0;
-  for (const TriangleMesh& mesh : folded_meshes()) {
+  for (const TriangleMesh& mesh : test::folded_meshes(8)) {
     SCOPED_TRACE(number++);
     const auto result = divisible(mesh);
     const Rims rims(mesh);

@@ -58,13 +58,13 @@ std::vector<Vector3> points_in_ring() { return {{0, 0, -0.4}, {0, 0, 0}, {0, 0, 
 
 TriangleMesh spiral_torus() {
   std::vector<Vector3> spiral;
-  const double turns = 2.5;
-  for (int i = 0; i <= 60; ++i) {
-    const double turn = turns * i / 60, radius = 0.2 + 0.24 * turn;
+  const double turns = 2;
+  for (int i = 0; i <= 48; ++i) {
+    const double turn = turns * i / 48, radius = 0.2 + 0.24 * turn;
     // Clockwise, so that the outer side is on the left.
     spiral.emplace_back(2 + radius * std::cos(2 * pi * turn), 0, -radius * std::sin(2 * pi * turn));
   }
-  return turned(spiral, 32);
+  return turned(spiral, 24);
 }
 
 TriangleMesh torus_without_arc(double from, double to) {

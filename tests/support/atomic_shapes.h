@@ -22,7 +22,7 @@ TriangleMesh outer_half_of_torus();
 /// In the middle of that torus: outside, its hole has to be closed by a ring.
 std::vector<Vector3> points_in_ring();
 
-/// Figure 5: a sheet that is a spiral of two turns and a half in the x-z plane, turned round the z axis. Its
+/// Figure 5: a sheet that is a spiral of two turns in the x-z plane, turned round the z axis. Its
 /// outer side is the front. The two rims can be joined by nothing but a second sheet between the windings.
 TriangleMesh spiral_torus();
 

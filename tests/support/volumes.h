@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/patch.h"
 #include "common/core/patch_check.h"
 #include "filter_atomicvolumes/decomposition.h"
 #include "filter_atomicvolumes/labelling.h"
@@ -120,6 +122,28 @@ inline TriangleMesh shell_with_hole(bool hole_within) {
   const TriangleMesh outer = sphere_with_hole(2, 0.6);
   const TriangleMesh inner = hole_within ? sphere_with_hole(2, 0.7) : icosphere(2);
   return join(outer, flipped(scaled(inner, 0.5)));
+}
+
+/// A sphere with a hole, one of its vertices next to the rim pushed through a face not far from it, in many
+/// ways for each of so many vertices.
+inline std::vector<TriangleMesh> folded_meshes(std::size_t vertices) {
+  const TriangleMesh sphere = sphere_with_hole(2, 0.6);
+  std::vector<char> at_rim(sphere.vertices.size(), 0);
+  for (Index h : build_topology(sphere).boundary_half_edges) at_rim[sphere.triangles[h / 3][h % 3]] = 1;
+  std::set<Index> next_to_rim;
+  for (const Triangle& t : sphere.triangles)
+    if (at_rim[t[0]] || at_rim[t[1]] || at_rim[t[2]])
+      for (Index v : t)
+        if (!at_rim[v] && next_to_rim.size() < vertices) next_to_rim.insert(v);
+  std::vector<TriangleMesh> meshes;
+  for (Index vertex : next_to_rim)
+    for (const Triangle& t : sphere.triangles) {
+      const Vector3 middle = (sphere.vertices[t[0]] + sphere.vertices[t[1]] + sphere.vertices[t[2]]) / 3;
+      if (std::count(t.begin(), t.end(), vertex) || (middle - sphere.vertices[vertex]).norm() > 0.6) continue;
+      meshes.push_back(sphere);
+      meshes.back().vertices[vertex] = as_stored(1.05 * middle);
+    }
+  return meshes;
 }
 
 /// A sphere whose upper pole is two vertices, each with five faces: between them two opposite faces are
