@@ -65,8 +65,8 @@ struct AtomicVolumesOptions {
   std::uint64_t seed = 1;  ///< of the octrees' random positions
   VolumeSmoothing smoothing = VolumeSmoothing::constrained;
   int smoothing_iterations = 5;  ///< 0 to 1000
-  bool moving_centres = false;    ///< the volumes' centres follow their volumes while smoothing (section 7)
-  bool remesh = true;             ///< give the patch the resolution of the mesh round the hole
+  bool moving_centres = false;   ///< the volumes' centres follow their volumes while smoothing (section 7)
+  bool remesh = true;            ///< give the patch the resolution of the mesh round the hole
   std::optional<SurfaceEnergy> fairing = SurfaceEnergy::normal_variation;  ///< absent: none
   std::optional<double>
       edge_length;  ///< of the patch's edges, mesh units, positive; absent: as the mesh around

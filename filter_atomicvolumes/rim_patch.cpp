@@ -18,8 +18,8 @@ constexpr int most_passes = 16;
 // How far from a Steiner point vertices are relaxed to make room.
 constexpr int relaxed_rings = 2;
 
-// Edges shorter than so many times the resolution of what is stored are rounded with care.
-constexpr double least_stored_edge = 64;
+// Edges shorter than so many times the resolution of what is stored are too short.
+constexpr double least_stored_edge = 16;
 
 // The smallest part of the way into the patch by which a Steiner point is taken off its edge.
 constexpr double smallest_lift = 1e-4;
@@ -62,20 +62,40 @@ std::unordered_map<std::uint64_t, Index> faces_at_boundary(const TriangleMesh& m
   return faces;
 }
 
-// Which vertices have neighbours so close that rounding to what will be stored can turn triangles over: where
-// planes cut convex cells all of them, else those at very short edges.
-std::vector<char> finer_than_stored(const Sheet& sheet) {
-  const bool cut = std::any_of(sheet.vertices.begin(), sheet.vertices.end(),
-                               [](const SheetVertex& one) { return one.cut; });
-  std::vector<char> fine(sheet.vertices.size(), cut);
-  if (cut) return fine;
-  for (const Triangle& t : sheet.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const Vector3 &a = sheet.vertices[t[k]].position, &b = sheet.vertices[t[(k + 1) % 3]].position;
-      const double resolution = a.cwiseAbs().maxCoeff() * std::numeric_limits<float>::epsilon();
-      if ((b - a).norm() < least_stored_edge * resolution) fine[t[k]] = fine[t[(k + 1) % 3]] = 1;
+// The length below which edges may turn over when their ends are rounded to what will be stored.
+double least_stored_length(const Vector3& a, const Vector3& b) {
+  const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  return least_stored_edge * most * std::numeric_limits<float>::epsilon();
+}
+
+// Collapses the edges that are too short to be stored, as far as the patch stays a manifold: towards the rim,
+// then towards Steiner points. What that tangles is so small that hardly anything is, and it is mended later.
+void remove_short_edges(PatchMesh& mesh) {
+  bool any = true;
+  while (any) {
+    any = false;
+    for (Index h = 0; h < 3 * mesh.triangle_count(); ++h) {
+      if (!mesh.alive(h / 3)) continue;
+      const Index a = mesh.origin(h), b = mesh.target(h);
+      if (mesh.can_remove_ear(a)) {
+        mesh.remove_ear(a);
+        any = true;
+        continue;
+      }
+      if (mesh.length(h) >= least_stored_length(mesh.position(a), mesh.position(b))) continue;
+      if (mesh.is_boundary(h)) {
+        for (const bool onto_target : {true, false})
+          if (mesh.alive(h / 3) && mesh.can_collapse_at_boundary(h, onto_target)) {
+            mesh.collapse_at_boundary(h, onto_target);
+            any = true;
+          }
+      } else if (!mesh.at_boundary(a) && mesh.can_collapse(h)) {
+        mesh.collapse(h);
+        any = true;
+      }
     }
-  return fine;
+  }
+  mesh.compact();
 }
 
 class SteinerRemover {
@@ -138,7 +158,9 @@ bool SteinerRemover::makes_chord(Index gone, Index kept) const {
   return chord;
 }
 
+// A point with a single triangle, whose corners are all on one edge of the rim, goes with that triangle.
 bool SteinerRemover::collapse(Index steiner) {
+  if (guarded_.remove_ear(steiner)) return true;
   const Index out = mesh_.leaving_along_boundary(steiner), in = mesh_.arriving_along_boundary(steiner);
   const bool forward_first = mesh_.length(out) < mesh_.length(in);
   for (bool forward : {forward_first, !forward_first}) {
@@ -289,28 +311,24 @@ RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, 
       local[v] = static_cast<Index>(order.size());
       order.push_back(v);
     }
-  // What will stay is rounded to what will be stored; Steiner points are as exact as they can be, and so is
-  // all that may be finer than what can be stored.
-  const std::vector<char> fine = finer_than_stored(sheet);
+  // What will stay is rounded to what will be stored; Steiner points are as exact as they can be, and where
+  // planes cut convex cells so is all.
+  const bool cut = std::any_of(sheet.vertices.begin(), sheet.vertices.end(),
+                               [](const SheetVertex& one) { return one.cut; });
   std::vector<Vector3> positions;
-  for (Index v : order) {
-    const SheetVertex& one = sheet.vertices[v];
-    positions.push_back(one.input == SheetVertex::none && one.rim_edge == SheetVertex::none && !fine[v]
-                            ? as_stored(one.position)
-                            : one.position);
-  }
+  for (Index v : order) positions.push_back(sheet.vertices[v].position);
   std::vector<Triangle> triangles = sheet.triangles;
   for (Triangle& t : triangles)
     for (Index& corner : t) corner = local[corner];
   Rim rim = collect_rim(mesh, topology, loops);
-  const std::size_t rim_size = rim_vertices.size();
-  return {std::move(loops),
-          std::move(rim_vertices),
-          std::move(rim_faces),
-          std::move(rim),
-          PatchMesh(std::move(positions), rim_size, std::move(triangles)),
-          sheet.volumes,
-          0};
+  PatchMesh patch(std::move(positions), rim_vertices.size(), std::move(triangles));
+  if (!cut) {
+    remove_short_edges(patch);
+    for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
+      if (!patch.at_boundary(v)) patch.move(v, as_stored(patch.position(v)));
+  }
+  return {std::move(loops), std::move(rim_vertices), std::move(rim_faces),
+          std::move(rim),   std::move(patch),        0};
 }
 
 std::size_t remove_steiner_points(RimPatch& patch, const InputNeighbourhood& input,

@@ -25,11 +25,10 @@ struct RimPatch {
   std::vector<Index> rim_faces;     ///< the mesh's face at the edge from each of them to the next
   Rim rim;
   PatchMesh mesh;
-  std::vector<LabelledSurface::Between> volumes;  ///< of each triangle of the mesh, gaps included
-  std::size_t steiner_points = 0;                 ///< left on the rims
+  std::size_t steiner_points = 0;  ///< left on the rims
 };
 
-/// `sheet` must be whole and have a rim.
+/// `sheet` must be without flaw and have a rim. Edges too short to be stored are collapsed.
 RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, const Sheet& sheet);
 
 /// Moves the Steiner points of the rims onto their rim neighbours, one by one, with exact tests, until the

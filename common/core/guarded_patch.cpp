@@ -191,6 +191,14 @@ bool GuardedPatch::collapse_at_boundary(Index h, bool onto_target) {
   return true;
 }
 
+bool GuardedPatch::remove_ear(Index vertex) {
+  if (!patch_.can_remove_ear(vertex)) return false;
+  const Index triangle = patch_.leaving_along_boundary(vertex) / 3;
+  patch_.remove_ear(vertex);
+  boxes_.remove(triangle);
+  return true;
+}
+
 bool GuardedPatch::fill_at_boundary(Index vertex, const Vector3& position) {
   const Vector3 place = as_stored(position);
   if (!place.allFinite() || !patch_.can_fill_at_boundary(vertex)) return false;

@@ -42,6 +42,8 @@ class GuardedPatch {
   bool flip(Index half_edge);
   bool collapse(Index half_edge);
   bool collapse_at_boundary(Index half_edge, bool onto_target);
+  /// Needs no guard: nothing is made or moved.
+  bool remove_ear(Index vertex);
   /// Takes a vertex off the boundary, to another position. It rests on nothing any more.
   bool fill_at_boundary(Index vertex, const Vector3& position);
 

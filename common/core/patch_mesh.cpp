@@ -239,6 +239,20 @@ Index PatchMesh::fill_at_boundary(Index vertex) {
   return added;
 }
 
+bool PatchMesh::can_remove_ear(Index vertex) const {
+  if (on_rim(vertex) || !at_boundary(vertex)) return false;
+  const Index out = half_edge_of_[vertex];
+  return opposite_[previous(out)] == none && opposite_[next(out)] != none;
+}
+
+void PatchMesh::remove_ear(Index vertex) {
+  const Index out = half_edge_of_[vertex], base = next(out), beyond = opposite_[base];
+  opposite_[beyond] = none;
+  half_edge_of_[origin(beyond)] = beyond;
+  triangles_[out / 3] = {none, none, none};
+  half_edge_of_[vertex] = none;
+}
+
 void PatchMesh::compact() {
   std::vector<Index> number(positions_.size(), none);
   std::size_t kept = 0;

@@ -106,6 +106,12 @@ class PatchMesh {
   /// Adds that triangle, and returns it: the vertex becomes an inner one. Requires `can_fill_at_boundary`.
   Index fill_at_boundary(Index vertex);
 
+  /// Whether the vertex, at the boundary and not on the rim, is the tip of a single triangle that hangs
+  /// together with others.
+  bool can_remove_ear(Index vertex) const;
+  /// Removes the vertex and that triangle. Requires `can_remove_ear`.
+  void remove_ear(Index vertex);
+
   /// Closes the gaps. Rim vertices keep their numbers, the others their order.
   void compact();
 
