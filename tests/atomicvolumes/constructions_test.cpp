@@ -227,6 +227,26 @@ TEST(Constructions, VerticesThatAPatchWouldHaveToJoin) {
   EXPECT_TRUE(result.completion.patch.empty());
 }
 
+// A sphere in two halves whose rims lie on each other: there is nothing to be filled.
+TEST(Constructions, RimsThatLieOnEachOther) {
+  const TriangleMesh sphere = test::icosphere(2);
+  const auto half = [&](bool upper) {
+    return test::without_faces(sphere,
+                               [&](Index f) { return (test::middle_of(sphere, f).z() > 0) != upper; });
+  };
+  const TriangleMesh halves = test::join(half(true), half(false));
+  const TriangleMesh hole = test::translated(test::sphere_with_hole(2, 0.6), Vector3(3, 0, 0));
+  const AtomicVolumesResult result = fill_by_atomic_volumes(test::join(halves, hole), {}, {});
+  const std::vector<HoleReport>& holes = result.completion.report.holes;
+  ASSERT_EQ(holes.size(), 3u);
+  for (std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(holes[i].outcome, HoleOutcome::failed);
+    EXPECT_NE(holes[i].reason.find("edges of this rim lie on each other"), std::string::npos)
+        << holes[i].reason;
+  }
+  EXPECT_EQ(holes[2].outcome, HoleOutcome::closed) << holes[2].reason;
+}
+
 // A second sheet all but on the first one, far from the rim: no cubes are wasted on it.
 TEST(Constructions, SheetsOnEachOtherFarFromTheRim) {
   const TriangleMesh cubes = test::join(test::cube(0.5, Vector3(1.5, 0, 0)),
