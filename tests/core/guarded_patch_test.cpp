@@ -144,7 +144,7 @@ struct Scene {
 };
 
 struct Step {
-  char kind = 'm';  // move, split, flip, collapse, boundary collapse, triangle at the boundary
+  char kind = 'm';  // move, split, flip, collapse, boundary collapse, triangle at the boundary, ear
   Index at = 0;     // vertex or half-edge
   Vector3 to = Vector3::Zero();
   bool onto_target = true;
@@ -153,19 +153,19 @@ struct Step {
 Step random_step(const PatchMesh& patch, std::mt19937& random, double wildness = 1) {
   const auto uniform = [&] { return random() * 0x1p-32; };
   Step step;
-  step.kind = "mmssfcbbt"[random() % 9];
+  step.kind = "mmssfcbbte"[random() % 10];
   // Boundary edges are few: those steps look for one.
   do {
     step.at = static_cast<Index>(random() % (3 * patch.triangle_count()));
-  } while (!patch.alive(step.at / 3) ||
-           ((step.kind == 'b' || step.kind == 't') && !patch.is_boundary(step.at) && random() % 500 != 0));
+  } while (!patch.alive(step.at / 3) || (std::string("bte").find(step.kind) != std::string::npos &&
+                                         !patch.is_boundary(step.at) && random() % 500 != 0));
   const Vector3& a = patch.position(patch.origin(step.at));
   const Vector3& b = patch.position(patch.target(step.at));
   const double reach = (b - a).norm() * wildness * (random() % 4 == 0 ? 2.0 : 0.3);
   const Vector3 offset = reach * Vector3(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
   step.onto_target = random() % 2 == 0;
   if (step.kind == 's') step.to = 0.5 * (a + b) + offset;
-  if (step.kind == 'm' || step.kind == 't') {
+  if (step.kind == 'm' || step.kind == 't' || step.kind == 'e') {
     step.at = patch.origin(step.at);
     step.to = a + offset;
   }
@@ -196,6 +196,10 @@ bool make(PatchMesh& patch, const Step& step) {
       patch.move(step.at, as_stored(step.to));
       patch.fill_at_boundary(step.at);
       return true;
+    case 'e':
+      if (!patch.can_remove_ear(step.at)) return false;
+      patch.remove_ear(step.at);
+      return true;
     default:
       if (!patch.can_collapse_at_boundary(step.at, step.onto_target)) return false;
       patch.collapse_at_boundary(step.at, step.onto_target);
@@ -215,6 +219,8 @@ bool make(GuardedPatch& guarded, const Step& step) {
       return guarded.collapse(step.at);
     case 't':
       return guarded.fill_at_boundary(step.at, step.to);
+    case 'e':
+      return guarded.remove_ear(step.at);
     default:
       return guarded.collapse_at_boundary(step.at, step.onto_target);
   }
@@ -335,6 +341,8 @@ TEST(GuardedPatch, StepsAreInTheWayOfLaterOnes) {
     EXPECT_GT(counts[kind][0], 20) << kind;
     EXPECT_GT(counts[kind][1], 10) << kind;
   }
+  EXPECT_GT(counts['e'][0], 20);
+  EXPECT_EQ(counts['e'][1], 0) << "nothing is made that could meet anything";
 }
 
 TEST(GuardedPatch, KeepsACleanPatchClean) {

@@ -339,6 +339,29 @@ void fill_if_possible(PatchMesh& mesh, Index vertex, std::map<std::string, int>&
   expect_adjacent(mesh, half_edges);
 }
 
+// Compares the answer and the outcome with the bare list of triangles without the one at the vertex.
+void remove_ear_if_possible(PatchMesh& mesh, Index vertex, std::map<std::string, int>& cases) {
+  std::set<Triangle> after;
+  std::vector<Index> at_vertex;
+  for (Index t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle& c = mesh.triangles()[t];
+    if (mesh.alive(t) && std::count(c.begin(), c.end(), vertex)) at_vertex.push_back(t);
+  }
+  bool hangs_together = false;
+  for (Index k = 0; at_vertex.size() == 1 && k < 3; ++k)
+    hangs_together |= !mesh.is_boundary(3 * at_vertex[0] + k);
+  ASSERT_EQ(mesh.can_remove_ear(vertex), hangs_together && !mesh.on_rim(vertex));
+  if (!mesh.can_remove_ear(vertex)) return;
+  ++cases["ear"];
+  after = triangles_of(mesh);
+  Triangle gone = mesh.triangles()[at_vertex[0]];
+  std::rotate(gone.begin(), std::min_element(gone.begin(), gone.end()), gone.end());
+  after.erase(gone);
+  mesh.remove_ear(vertex);
+  ASSERT_EQ(triangles_of(mesh), after);
+  ASSERT_FALSE(mesh.vertex_alive(vertex));
+}
+
 TEST(PatchMesh, TrianglesAtTheBoundaryKeepAManifold) {
   std::map<std::string, int> cases;
   for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -350,6 +373,7 @@ TEST(PatchMesh, TrianglesAtTheBoundaryKeepAManifold) {
       const Index choice = random() % 6;
       if (choice < 3) {
         ASSERT_NO_FATAL_FAILURE(fill_if_possible(mesh, mesh.origin(h), cases)) << "seed " << seed;
+        ASSERT_NO_FATAL_FAILURE(remove_ear_if_possible(mesh, mesh.origin(h), cases)) << "seed " << seed;
       } else if (mesh.is_boundary(h)) {
         if (mesh.can_collapse_at_boundary(h, true)) mesh.collapse_at_boundary(h, true);
       } else if (choice < 5) {
@@ -363,6 +387,7 @@ TEST(PatchMesh, TrianglesAtTheBoundaryKeepAManifold) {
     }
   }
   for (const char* name : {"on the rim", "inside", "filled", "refused"}) EXPECT_GT(cases[name], 20) << name;
+  EXPECT_GT(cases["ear"], 5);
 }
 
 // Its neighbours are joined already, by the third side of its only triangle.
