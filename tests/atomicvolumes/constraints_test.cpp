@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/atomic_shapes.h"
 #include "tests/support/atomic_solids.h"
 #include "tests/support/meshes.h"
 
@@ -16,44 +17,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-Vector3 centroid(const TriangleMesh& mesh, Index face) {
-  const Triangle& t = mesh.triangles[face];
-  return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
-}
-
-/// Two coaxial rims: the half of a torus that is further from the axis than 1. Two discs have less area than
-/// the ring between the rims.
-TriangleMesh outer_half_of_torus() {
-  const TriangleMesh whole = torus(48, 24, 1, 0.6);
-  return without_faces(whole, [&](Index f) {
-    const Vector3 p = centroid(whole, f);
-    return std::hypot(p[0], p[1]) < 1;
-  });
-}
-
-/// A torus round the z axis without what lies between two angles (degrees, from the x axis).
-TriangleMesh torus_without_arc(double from, double to) {
-  const TriangleMesh whole = torus(48, 24, 1, 0.4);
-  return without_faces(whole, [&](Index f) {
-    const Vector3 p = centroid(whole, f);
-    const double angle = std::atan2(p[1], p[0]) * 180 / pi;
-    return from < angle && angle < to;
-  });
-}
-
 double distance_to_torus(const Vector3& p) {
   return std::abs(std::hypot(std::hypot(p[0], p[1]) - 1, p[2]) - 0.4);
-}
-
-/// Two lumps that face each other across a gap at (1, 0, 0) so narrow that a bridge has less area than two
-/// caps.
-TriangleMesh lumps() { return torus_without_arc(-8, 8); }
-
-std::vector<Vector3> points_in_gap() {
-  std::vector<Vector3> points;
-  for (int i = -2; i <= 2; ++i)
-    for (int k = -2; k <= 2; ++k) points.push_back({1 + 0.18 * i, 0.003, 0.18 * k});
-  return points;
 }
 
 /// From above down through the gap.
@@ -290,7 +255,7 @@ TEST(Constraints, InsidePointsWinAgainstViews) {
 TEST(Constraints, HintsHaveAPrice) {
   VolumeConstraints constraints;
   constraints.hinted_outside = points_in_gap();
-  for (const CutWeight weight : {CutWeight::area, CutWeight::unit}) {
+  for (const CutWeight weight : {CutWeight::area, CutWeight::balanced, CutWeight::unit}) {
     const AtomicSolid plain = complete_by_cut(lumps(), {}, 1, {{1, 0, 0}}, weight);
     constraints.hint_price = 1e-9;
     const AtomicSolid cheap = complete_by_cut(lumps(), constraints, 1, {{1, 0, 0}}, weight);
@@ -299,7 +264,7 @@ TEST(Constraints, HintsHaveAPrice) {
     constraints.hint_price = 1;
     const AtomicSolid dear = complete_by_cut(lumps(), constraints, 1, {{1, 0, 0}}, weight);
     EXPECT_EQ(dear.labels, std::vector<char>{0});
-    if (weight == CutWeight::area) {
+    if (weight != CutWeight::unit) {
       EXPECT_EQ(dear.genus, 0);
     }
   }
@@ -372,7 +337,7 @@ TEST(SymmetryHints, ATranslationRepeatsABump) {
     return mesh;
   }();
   const TriangleMesh bitten = without_faces(whole, [&](Index f) {
-    const Vector3 p = centroid(whole, f);
+    const Vector3 p = middle_of(whole, f);
     return std::abs(p[0] - 1) < 0.42 && p[2] > 0.02;
   });
   const auto distance = [&](const Vector3& p) { return std::abs(std::hypot(p[1], p[2]) - radius(p[0])); };

@@ -184,6 +184,34 @@ TEST(Decomposition, TouchingSheetsStopWithinTheBudget) {
   EXPECT_EQ(deepest, Lattice::depth);
 }
 
+// Beside a sphere with a hole a cube with a smaller one in it, whose right-hand face all but lies on the
+// larger one's. Both say that inside is behind them, so no cube may hold the two, and only tiny ones do not.
+// Where no rim is near, that does not matter to the patch.
+TEST(Decomposition, SheetsOnEachOtherFarFromTheRimsAreNotTakenApart) {
+  const TriangleMesh cubes = test::join(test::cube(0.5, Vector3(1.5, 0, 0)),
+                                        test::cube(0.25, Vector3(1.75 - 0x1p-19, 0.125, 0.125)));
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const PlacedMesh placed(test::join(test::sphere_with_hole(2, 0.6), cubes), seed);
+    DecompositionOptions options;
+    options.cube_budget = 40000;
+    EXPECT_THROW(decompose(placed.lattice_mesh, options), CompletionError) << "tiny cubes all over the face";
+    options.least_contradiction = Octree::side(7);
+    const Decomposition d = decompose(placed.lattice_mesh, options);
+    int contradicting = 0;
+    for (Index cube = 0; cube < d.octree.size(); ++cube) {
+      if (!d.octree.is_leaf(cube)) continue;
+      const Verdict verdict = judge(placed.lattice_mesh, d.octree.box(cube));
+      EXPECT_EQ(d.volumes[cube].kind, verdict.volume.kind);
+      EXPECT_EQ(d.volumes[cube].triangles, verdict.volume.triangles);
+      if (verdict.trivial) continue;
+      ++contradicting;
+      EXPECT_EQ(verdict.volume.kind, VolumeKind::crossed) << "cubes at rims are always split";
+      EXPECT_EQ(d.octree[cube].depth, 7) << "not before it is small enough";
+    }
+    EXPECT_GT(contradicting, 30);
+  }
+}
+
 // A cylinder in the middle of a root that is shifted at random: no plane of the octree runs along its sides.
 TEST(Decomposition, ASymmetricCylinderStaysShallow) {
   TriangleMesh mesh = test::translated(test::open_cylinder(24, 4), Vector3(0, 0, -1));

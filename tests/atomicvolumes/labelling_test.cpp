@@ -27,17 +27,21 @@ struct Price {
   double weight;
 };
 
+double price_of(CutWeight weight, double area) {
+  return weight == CutWeight::area ? area : weight == CutWeight::balanced ? std::pow(area, 0.25) : 1.0;
+}
+
 std::vector<Price> prices_of(const PlacedMesh& placed, const VolumeComplex& complex, CutWeight weight) {
   std::vector<Price> prices;
   for (const VolumeFace& face : complex.faces) {
     const auto at = [&](std::size_t k) { return complex.vertices[face.corners[k]].position; };
     const double area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-    prices.push_back({face.behind, face.before, weight == CutWeight::area ? area : 1.0});
+    prices.push_back({face.behind, face.before, price_of(weight, area)});
   }
   for (const VolumeSquare& s : complex.whole_squares) {
     const double side =
         static_cast<double>(complex.squares[s.square].length) * placed.lattice_mesh.lattice.step();
-    prices.push_back({s.behind, s.before, weight == CutWeight::area ? side * side : 1.0});
+    prices.push_back({s.behind, s.before, price_of(weight, side * side)});
   }
   return prices;
 }
@@ -89,7 +93,7 @@ double least_weight(const std::vector<Price>& prices, const std::vector<NodeTie>
 // All nodes but a few, which hang together, are tied to random sides; the cut of the rest is compared with
 // trying everything.
 TEST(Labelling, TheCutIsTheLeastOfAll) {
-  for (CutWeight weight : {CutWeight::area, CutWeight::unit})
+  for (CutWeight weight : {CutWeight::area, CutWeight::balanced, CutWeight::unit})
     for (unsigned seed = 1; seed <= 12; ++seed) {
       const PlacedMesh placed(seed % 2 == 0 ? test::open_cylinder(6, 2) : test::sphere_with_hole(1, 0.7),
                               seed);
@@ -107,13 +111,13 @@ TEST(Labelling, TheCutIsTheLeastOfAll) {
               open.push_back(other);
       const Labelling base = test::random_labelling(complex, seed, 0.5);
       std::vector<NodeTie> ties;
-      const double typical = weight == CutWeight::area ? 1e-3 : 1.0;
+      const double typical = price_of(weight, 1e-3);
       for (Cell node = 0; node < static_cast<Cell>(complex.nodes); ++node) {
         if (std::count(open.begin(), open.end(), node) == 0)
           ties.push_back({node, base.is_inside(node), infinite});
         else if (random() % 3 == 0)
           ties.push_back(
-              {node, random() % 2 == 0, weight == CutWeight::area ? typical * test::uniform(random) : 2.0});
+              {node, random() % 2 == 0, weight == CutWeight::unit ? 2.0 : typical * test::uniform(random)});
       }
       const Labelling cut = cut_complex(placed.lattice_mesh, complex, weight, ties);
       ASSERT_EQ(cut.inside.size(), complex.nodes);
@@ -126,6 +130,33 @@ TEST(Labelling, TheCutIsTheLeastOfAll) {
       EXPECT_NEAR(cut.weight, expected, rounding);
       EXPECT_NEAR(weight_of(prices, ties, cut), expected, rounding) << "the labels are those of the cut";
     }
+}
+
+TEST(Labelling, WhatFacesCost) {
+  EXPECT_EQ(cost_of_face(CutWeight::area, 0.0625), 0.0625);
+  EXPECT_EQ(cost_of_face(CutWeight::balanced, 0.0625), 0.5);
+  EXPECT_EQ(cost_of_face(CutWeight::balanced, 16), 2);
+  EXPECT_EQ(cost_of_face(CutWeight::unit, 0.0625), 1);
+  for (CutWeight weight : {CutWeight::area, CutWeight::balanced, CutWeight::unit}) {
+    const PlacedMesh placed(test::sphere_with_hole(1, 0.7), 2);
+    const auto division = test::divide(placed);
+    ASSERT_TRUE(division);
+    std::vector<double> of_node(division->complex.nodes, 0);
+    double sum = 0, area = 0;
+    const std::vector<Price> prices = prices_of(placed, division->complex, weight);
+    for (const Price& p : prices) {
+      sum += p.weight;
+      for (Cell cell : {p.a, p.b})
+        if (cell >= 0) of_node[static_cast<std::size_t>(cell)] += p.weight;
+    }
+    for (const Price& p : prices_of(placed, division->complex, CutWeight::area)) area += p.weight;
+    const double count = static_cast<double>(prices.size());
+    const FaceMeasure measure = measure_faces(placed.lattice_mesh, division->complex, weight);
+    EXPECT_NEAR(measure.mean_cost, sum / count, 1e-9);
+    EXPECT_NEAR(measure.mean_area, area / count, 1e-9);
+    ASSERT_EQ(measure.of_node.size(), of_node.size());
+    for (std::size_t i = 0; i < of_node.size(); ++i) EXPECT_NEAR(measure.of_node[i], of_node[i], 1e-9);
+  }
 }
 
 TEST(Labelling, NoOtherLabellingWeighsLess) {

@@ -18,7 +18,7 @@ using test::PlacedMesh;
 
 /// A sheet's boundary without its Steiner points: the mesh's boundary half-edges along it, and whether the
 /// walk is right: from one boundary vertex over points of one boundary edge, in their order, to the next.
-std::vector<Index> closed_edges(const PlacedMesh& placed, const Sheet& sheet) {
+std::vector<Index> closed_edges(const PlacedMesh& placed, const TriangleMesh& input, const Sheet& sheet) {
   std::map<Index, Index> next;
   for (const auto& [edge, times] : test::boundary_of(sheet.triangles)) {
     EXPECT_EQ(std::abs(times), 1);
@@ -26,7 +26,7 @@ std::vector<Index> closed_edges(const PlacedMesh& placed, const Sheet& sheet) {
   }
   std::map<test::Edge, Index> half_edges;  // by target and origin: a patch walks the other way
   for (Index h : placed.topology.boundary_half_edges)
-    half_edges[{placed.lattice_mesh.target(h), placed.lattice_mesh.origin(h)}] = h;
+    half_edges[{input.triangles[h / 3][(h % 3 + 1) % 3], input.triangles[h / 3][h % 3]}] = h;
   std::vector<Index> closed;
   for (const auto& [start, second] : next) {
     const Index from = sheet.vertices[start].input;
@@ -44,10 +44,10 @@ std::vector<Index> closed_edges(const PlacedMesh& placed, const Sheet& sheet) {
     }
     closed.push_back(found->second);
     double share = 0;
-    const Vector3 along = placed.mesh.vertices[found->first.second] - placed.mesh.vertices[from];
+    const Vector3 along = input.vertices[found->first.second] - input.vertices[from];
     for (Index v : between) {
       EXPECT_EQ(sheet.vertices[v].rim_edge, found->second);
-      const double here = along.dot(sheet.vertices[v].position - placed.mesh.vertices[from]);
+      const double here = along.dot(sheet.vertices[v].position - input.vertices[from]);
       EXPECT_GT(here, share) << "Steiner points go forward";
       share = here;
     }
@@ -65,7 +65,7 @@ void expect_sheets(const PlacedMesh& placed, const std::vector<Sheet>& sheets) {
     const test::Shape shape = test::shape_of(sheet.triangles);
     ASSERT_TRUE(shape.manifold);
     ASSERT_EQ(shape.components, 1u);
-    ASSERT_EQ(sheet.closes, closed_edges(placed, sheet));
+    ASSERT_EQ(sheet.closes, closed_edges(placed, placed.mesh, sheet));
     all.insert(all.end(), sheet.closes.begin(), sheet.closes.end());
     std::set<Index> used;
     for (const Triangle& t : sheet.triangles) used.insert(t.begin(), t.end());
@@ -98,6 +98,85 @@ TEST(Sheets, AnyLabellingComesApartIntoManifolds) {
       }
     }
   EXPECT_GT(pieces, 1000u);
+}
+
+/// The fourth face of a tetrahedron as a surface, for the three others without it.
+LabelledSurface fourth_face(const TriangleMesh& whole) {
+  LabelledSurface surface;
+  for (Index v : whole.triangles[0]) {
+    VolumeVertex vertex;
+    vertex.position = whole.vertices[v];
+    vertex.input = v;
+    surface.vertices.push_back(vertex);
+  }
+  surface.triangles = {{0, 1, 2}};
+  surface.volumes = {{inside_cell, outside_cell}};
+  return surface;
+}
+
+TEST(Sheets, CornersAreTheInputsVertices) {
+  const TriangleMesh whole = test::tetrahedron();
+  TriangleMesh mesh = whole;
+  mesh.triangles.erase(mesh.triangles.begin());
+  mesh.vertices.push_back(mesh.vertices[whole.triangles[0][0]]);
+  const Index rim = whole.triangles[0][0], copy = 4;
+  const MeshTopology topology = build_topology(mesh);
+  std::vector<Index> at_rim;  // the two faces with an edge of the rim at the vertex
+  for (Index t = 0; t < 3; ++t)
+    if (std::count(mesh.triangles[t].begin(), mesh.triangles[t].end(), rim)) at_rim.push_back(t);
+  ASSERT_EQ(at_rim.size(), 2u);
+  for (const std::vector<Index>& renamed :
+       {std::vector<Index>{}, {at_rim[0]}, {at_rim[1]}, {at_rim[0], at_rim[1]}}) {
+    TriangleMesh input = mesh;
+    for (Index t : renamed) std::replace(input.triangles[t].begin(), input.triangles[t].end(), rim, copy);
+    const auto sheets = split_into_sheets(mesh, topology, fourth_face(whole), input);
+    ASSERT_EQ(sheets.size(), 1u);
+    EXPECT_EQ(sheets[0].closes, topology.boundary_half_edges);
+    EXPECT_EQ(sheets[0].flaw, renamed.size() == 1 ? Sheet::Flaw::joins_vertices : Sheet::Flaw::none)
+        << "the corner cannot be two vertices at once";
+    if (renamed.size() == 1) continue;
+    std::vector<Index> names;
+    for (Index v : sheets[0].triangles[0]) names.push_back(sheets[0].vertices[v].input);
+    EXPECT_EQ(names, (std::vector<Index>{renamed.empty() ? rim : copy, whole.triangles[0][1],
+                                         whole.triangles[0][2]}));
+  }
+}
+
+// Space is divided by a mesh in which the two vertices at the pole are one.
+TEST(Sheets, PiecesAtCoincidentVerticesAreJoinedToTheirOwn) {
+  const test::SplitPole pole;
+  TriangleMesh merged = pole.mesh;
+  for (Triangle& t : merged.triangles) std::replace(t.begin(), t.end(), pole.copy, pole.original);
+  const auto at = [&](const Sheet& sheet, Index vertex) {
+    return std::any_of(sheet.closes.begin(), sheet.closes.end(), [&](Index h) {
+      const Triangle& t = pole.mesh.triangles[h / 3];
+      return t[h % 3] == vertex || t[(h % 3 + 1) % 3] == vertex;
+    });
+  };
+  std::size_t whole = 0, joining = 0, renamed = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const PlacedMesh placed(merged, seed);
+    const auto division = test::divide(placed);
+    if (!division) continue;
+    for (double share : {0.0, 0.3, 0.6, 1.0}) {
+      const Labelling labelling = test::random_labelling(division->complex, seed, share);
+      for (const Sheet& sheet : split_into_sheets(placed.mesh, placed.topology,
+                                                  surface_of(placed, *division, labelling), pole.mesh)) {
+        ASSERT_NE(sheet.flaw, Sheet::Flaw::open);
+        if (sheet.flaw == Sheet::Flaw::joins_vertices) {
+          EXPECT_TRUE(at(sheet, pole.original) && at(sheet, pole.copy));
+          ++joining;
+          continue;
+        }
+        EXPECT_EQ(sheet.closes, closed_edges(placed, pole.mesh, sheet));
+        whole += !sheet.closes.empty();
+        renamed += at(sheet, pole.copy);
+      }
+    }
+  }
+  EXPECT_GT(whole, 10u);
+  EXPECT_GT(joining, 5u);
+  EXPECT_GT(renamed, 5u);
 }
 
 }  // namespace

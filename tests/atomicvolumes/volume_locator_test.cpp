@@ -121,21 +121,25 @@ TEST(TieConstraints, PricesAreInTheUnitOfTheWeight) {
   };
   const double diagonal = bounding_box_diagonal(divided.mesh);
   EXPECT_NEAR(price(CutWeight::area), 0.125 * diagonal * diagonal, 1e-12);
-  double area = 0;
+  double area = 0, roots = 0;
   for (const VolumeFace& face : divided.complex.faces) {
     const Vector3& p = divided.complex.vertices[face.corners[0]].position;
-    area += 0.5 * (divided.complex.vertices[face.corners[1]].position - p)
-                      .cross(divided.complex.vertices[face.corners[2]].position - p)
-                      .norm();
+    const double one = 0.5 * (divided.complex.vertices[face.corners[1]].position - p)
+                                 .cross(divided.complex.vertices[face.corners[2]].position - p)
+                                 .norm();
+    area += one;
+    roots += std::pow(one, 0.25);
   }
   for (const VolumeSquare& s : divided.complex.whole_squares) {
     const double side =
         static_cast<double>(divided.complex.squares[s.square].length) * divided.placed.lattice.step();
     area += side * side;
+    roots += std::sqrt(side);
   }
   const double count =
       static_cast<double>(divided.complex.faces.size() + divided.complex.whole_squares.size());
   EXPECT_NEAR(price(CutWeight::unit) * area / count, price(CutWeight::area), 1e-9);
+  EXPECT_NEAR(price(CutWeight::balanced) * area / roots, price(CutWeight::area), 1e-9);
 }
 
 }  // namespace

@@ -400,25 +400,22 @@ TEST(VolumeSmoothing, SuggestsTheSideOfTheSmoothedSurface) {
   EXPECT_GT(sure, 3u);
 }
 
-// A cut that counts faces needs prices in faces, whatever the size of the mesh.
+// The cut needs prices in what it counts, whatever the size of the mesh.
 TEST(VolumeSmoothing, SuggestionsCostFacesWhereTheCutCountsFaces) {
-  for (double scale : {1.0, 1e-3}) {
+  for (const auto& [weight, scale] :
+       {std::pair(CutWeight::unit, 1.0), std::pair(CutWeight::unit, 1e-3),
+        std::pair(CutWeight::balanced, 1.0), std::pair(CutWeight::balanced, 1e-3)}) {
     const Cut cut(test::scaled(test::sphere_with_hole(3, 0.9), scale), 1);
     ASSERT_FALSE(cut.surface.triangles.empty());
     const VolumeComplex& complex = cut.division.complex;
-    std::vector<double> faces(complex.nodes, 0);
-    const auto count = [&](Cell cell) {
-      if (cell >= 0) faces[static_cast<std::size_t>(cell)] += 1;
-    };
-    for (const VolumeFace& face : complex.faces) count(face.behind), count(face.before);
-    for (const VolumeSquare& square : complex.whole_squares) count(square.behind), count(square.before);
+    const FaceMeasure faces = measure_faces(cut.placed.lattice_mesh, complex, weight);
     VolumeSmoothingOptions options;
-    options.weight = CutWeight::unit;
+    options.weight = weight;
     const std::vector<NodeTie> ties = suggest_by_springs(cut.placed.lattice_mesh, cut.division.decomposition,
                                                          complex, cut.surface, options);
     ASSERT_FALSE(ties.empty());
     for (const NodeTie& tie : ties)
-      EXPECT_DOUBLE_EQ(tie.price, options.suggestion * faces[static_cast<std::size_t>(tie.node)] / 6);
+      EXPECT_DOUBLE_EQ(tie.price, options.suggestion * faces.of_node[static_cast<std::size_t>(tie.node)] / 6);
   }
 }
 

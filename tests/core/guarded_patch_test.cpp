@@ -144,7 +144,7 @@ struct Scene {
 };
 
 struct Step {
-  char kind = 'm';  // move, split, flip, collapse, boundary collapse
+  char kind = 'm';  // move, split, flip, collapse, boundary collapse, triangle at the boundary, ear
   Index at = 0;     // vertex or half-edge
   Vector3 to = Vector3::Zero();
   bool onto_target = true;
@@ -153,19 +153,19 @@ struct Step {
 Step random_step(const PatchMesh& patch, std::mt19937& random, double wildness = 1) {
   const auto uniform = [&] { return random() * 0x1p-32; };
   Step step;
-  step.kind = "mmssfcbb"[random() % 8];
+  step.kind = "mmssfcbbte"[random() % 10];
   // Boundary edges are few: those steps look for one.
   do {
     step.at = static_cast<Index>(random() % (3 * patch.triangle_count()));
-  } while (!patch.alive(step.at / 3) ||
-           (step.kind == 'b' && !patch.is_boundary(step.at) && random() % 500 != 0));
+  } while (!patch.alive(step.at / 3) || (std::string("bte").find(step.kind) != std::string::npos &&
+                                         !patch.is_boundary(step.at) && random() % 500 != 0));
   const Vector3& a = patch.position(patch.origin(step.at));
   const Vector3& b = patch.position(patch.target(step.at));
   const double reach = (b - a).norm() * wildness * (random() % 4 == 0 ? 2.0 : 0.3);
   const Vector3 offset = reach * Vector3(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5);
   step.onto_target = random() % 2 == 0;
   if (step.kind == 's') step.to = 0.5 * (a + b) + offset;
-  if (step.kind == 'm') {
+  if (step.kind == 'm' || step.kind == 't' || step.kind == 'e') {
     step.at = patch.origin(step.at);
     step.to = a + offset;
   }
@@ -191,6 +191,15 @@ bool make(PatchMesh& patch, const Step& step) {
       if (!patch.can_collapse(step.at)) return false;
       patch.collapse(step.at);
       return true;
+    case 't':
+      if (!patch.can_fill_at_boundary(step.at)) return false;
+      patch.move(step.at, as_stored(step.to));
+      patch.fill_at_boundary(step.at);
+      return true;
+    case 'e':
+      if (!patch.can_remove_ear(step.at)) return false;
+      patch.remove_ear(step.at);
+      return true;
     default:
       if (!patch.can_collapse_at_boundary(step.at, step.onto_target)) return false;
       patch.collapse_at_boundary(step.at, step.onto_target);
@@ -208,6 +217,10 @@ bool make(GuardedPatch& guarded, const Step& step) {
       return guarded.flip(step.at);
     case 'c':
       return guarded.collapse(step.at);
+    case 't':
+      return guarded.fill_at_boundary(step.at, step.to);
+    case 'e':
+      return guarded.remove_ear(step.at);
     default:
       return guarded.collapse_at_boundary(step.at, step.onto_target);
   }
@@ -260,7 +273,7 @@ using Counts = std::map<char, std::array<int, 3>>;
 /// leaves everything as it was.
 void expect_exact_answers(Scene& scene, std::mt19937& random, int steps, double wildness, Counts& counts) {
   GuardedPatch guarded = scene.guard();
-  const std::map<Index, Index> rests = scene.resting();
+  std::map<Index, Index> rests = scene.resting();
   std::vector<Index> changed;  // by the last step that was made: the next ones aim at them
   for (int i = 0; i < steps; ++i) {
     const Step step = changed.empty() || random() % 2 == 0
@@ -269,11 +282,15 @@ void expect_exact_answers(Scene& scene, std::mt19937& random, int steps, double 
     const PatchMesh before = scene.patch;
     PatchMesh edited = scene.patch;
     const bool manifold = make(edited, step);
-    const bool allowed = manifold && scene.allows(edited, rests);
+    std::map<Index, Index> still = rests;
+    if (step.kind == 't') still.erase(step.at);
+    const bool allowed = manifold && scene.allows(edited, still);
     ASSERT_EQ(make(guarded, step), allowed) << "step " << i << " of kind " << step.kind;
     ASSERT_NO_FATAL_FAILURE(expect_same(scene.patch, allowed ? edited : before));
     ++counts[step.kind][allowed ? 0 : manifold ? 1 : 2];
-    if (allowed) changed = changed_triangles(before, scene.patch);
+    if (!allowed) continue;
+    rests = still;
+    changed = changed_triangles(before, scene.patch);
   }
 }
 
@@ -289,7 +306,8 @@ TEST(GuardedPatch, RefusesExactlyWhatWouldMeetSomething) {
     EXPECT_GT(counts[kind][0], 20) << kind;
     EXPECT_GT(counts[kind][1], 20) << kind;
   }
-  EXPECT_GT(counts['b'][0], 20);
+  for (char kind : {'b', 't'}) EXPECT_GT(counts[kind][0], 20) << kind;
+  EXPECT_GT(counts['t'][1], 0);
 }
 
 /// A bumpy sheet; every other boundary vertex is on the rim.
@@ -319,10 +337,12 @@ TEST(GuardedPatch, StepsAreInTheWayOfLaterOnes) {
     std::mt19937 random(seed);
     ASSERT_NO_FATAL_FAILURE(expect_exact_answers(scene, random, 1500, 4, counts)) << "seed " << seed;
   }
-  for (char kind : {'m', 's', 'f', 'c', 'b'}) {
+  for (char kind : {'m', 's', 'f', 'c', 'b', 't'}) {
     EXPECT_GT(counts[kind][0], 20) << kind;
     EXPECT_GT(counts[kind][1], 10) << kind;
   }
+  EXPECT_GT(counts['e'][0], 20);
+  EXPECT_EQ(counts['e'][1], 0) << "nothing is made that could meet anything";
 }
 
 TEST(GuardedPatch, KeepsACleanPatchClean) {
@@ -406,8 +426,35 @@ TEST(GuardedPatch, RestingOnASideIsNotMeeting) {
   EXPECT_GT(at_steiner_points, 10);
 }
 
+// A vertex that lies on the side of a face may move through that face, until it is taken off the side.
+TEST(GuardedPatch, AVertexTakenOffTheBoundaryRestsNoMore) {
+  const TriangleMesh mesh{{{0, 0, 0}, {4, 0, 0}, {2, -4, 0}}, {{1, 0, 2}}};
+  const InputNeighbourhood input(mesh);
+  const Vector3 side(2, 0, 0), inside(2, 1, 0.5), through(2, -2, -1);
+  PatchMesh patch({{0, 0, 0}, {4, 0, 0}, {2, 4, 4}, side}, 3, {{0, 3, 2}, {3, 1, 2}});
+  const std::vector<Corners> obstacles = {{Vector3(0.5, 2, 0.5), {3.5, 2, 0.5}, {2, 2, 1.2}}};
+  const ForbiddenEdges none;
+  GuardedPatch guarded(patch, input, none, obstacles);
+  guarded.rest(3, 0);
+  ASSERT_TRUE(guarded.move(3, through));
+  ASSERT_TRUE(guarded.move(3, side));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(guarded.fill_at_boundary(3, through)) << "the moved triangles would meet the face";
+  EXPECT_FALSE(guarded.fill_at_boundary(3, {2, 5, 0.5})) << "they would meet the obstacle";
+  EXPECT_FALSE(guarded.fill_at_boundary(3, {3, 0, 0})) << "a triangle without area";
+  EXPECT_FALSE(guarded.fill_at_boundary(3, {nan, 0, 0}));
+  EXPECT_FALSE(guarded.fill_at_boundary(2, inside)) << "on the rim";
+  EXPECT_EQ(patch.triangle_count(), 2u);
+  EXPECT_EQ(patch.position(3), side);
+  ASSERT_TRUE(guarded.fill_at_boundary(3, inside));
+  EXPECT_EQ(patch.position(3), inside);
+  EXPECT_EQ(patch.triangle_count(), 3u);
+  EXPECT_FALSE(guarded.move(3, through));
+  EXPECT_FALSE(guarded.fill_at_boundary(3, inside)) << "an inner one now";
+}
+
 // Two corners of a square that the mesh joins elsewhere: the patch's edge may not become that diagonal, by a
-// flip or by a collapse.
+// flip, by a collapse or by a triangle at the boundary.
 TEST(GuardedPatch, NeverMakesAnEdgeThatTheMeshHas) {
   const TriangleMesh far = test::tetrahedron();
   const InputNeighbourhood input(far);
@@ -425,6 +472,13 @@ TEST(GuardedPatch, NeverMakesAnEdgeThatTheMeshHas) {
     Index half_edge = 0;
     while (fan.origin(half_edge) != 4 || fan.target(half_edge) != 2) ++half_edge;
     EXPECT_EQ(collapses.collapse(half_edge), free) << "onto 2 makes the edge 0 2";
+    // The square's corner 1, not on the rim: its triangle makes the edge 0 2.
+    PatchMesh open({square[0], square[3], square[2], positions[4], square[1]}, 3,
+                   {{0, 4, 3}, {4, 2, 3}, {2, 1, 3}, {1, 0, 3}});
+    const ForbiddenEdges renamed = forbidden == ForbiddenEdges{{0, 3}} ? ForbiddenEdges{{0, 1}} : forbidden;
+    GuardedPatch fills(open, input, renamed, no_obstacles);
+    EXPECT_EQ(fills.fill_at_boundary(4, {13, 1, 1.5}), free);
+    EXPECT_EQ(open.triangle_count(), free ? 5u : 4u);
   }
 }
 

@@ -293,5 +293,116 @@ TEST(PatchMesh, CollapsesTakeAllSteinerPointsOut) {
   }
 }
 
+/// The half-edges of the boundary that arrive at a vertex and leave it, by looking at all.
+std::pair<Index, Index> along_boundary(const PatchMesh& mesh, Index vertex) {
+  std::pair<Index, Index> found(PatchMesh::none, PatchMesh::none);
+  for (Index h = 0; h < 3 * mesh.triangle_count(); ++h) {
+    if (!mesh.alive(h / 3) || !mesh.is_boundary(h)) continue;
+    if (mesh.target(h) == vertex) found.first = h;
+    if (mesh.origin(h) == vertex) found.second = h;
+  }
+  return found;
+}
+
+// Compares the answer and the outcome with one triangle more in the bare list of triangles.
+void fill_if_possible(PatchMesh& mesh, Index vertex, std::map<std::string, int>& cases) {
+  const bool can = mesh.can_fill_at_boundary(vertex);
+  if (mesh.on_rim(vertex) || !mesh.at_boundary(vertex)) {
+    ASSERT_FALSE(can);
+    ++cases[mesh.on_rim(vertex) ? "on the rim" : "inside"];
+    return;
+  }
+  const auto [in, out] = along_boundary(mesh, vertex);
+  ASSERT_EQ(mesh.arriving_along_boundary(vertex), in);
+  ASSERT_EQ(mesh.leaving_along_boundary(vertex), out);
+  const std::set<Triangle> before = triangles_of(mesh);
+  const Index a = mesh.origin(in), b = mesh.target(out);
+  Triangle added = {a, b, vertex};
+  const bool joined = std::any_of(before.begin(), before.end(), [&](const Triangle& t) {
+    return std::count(t.begin(), t.end(), a) != 0 && std::count(t.begin(), t.end(), b) != 0;
+  });
+  ASSERT_EQ(can, !joined);
+  ++cases[can ? "filled" : "refused"];
+  if (!can) return;
+  std::rotate(added.begin(), std::min_element(added.begin(), added.end()), added.end());
+  std::set<Triangle> after = before;
+  after.insert(added);
+  const test::Shape old_shape = shape_of(before), new_shape = shape_of(after);
+  ASSERT_TRUE(new_shape.manifold);
+  ASSERT_EQ(new_shape.euler, old_shape.euler);
+  ASSERT_EQ(new_shape.boundary + 1, old_shape.boundary);
+  const Index number = mesh.fill_at_boundary(vertex);
+  ASSERT_EQ(number + 1, mesh.triangle_count());
+  ASSERT_EQ(triangles_of(mesh), after);
+  ASSERT_FALSE(mesh.at_boundary(vertex));
+  Sides half_edges;
+  expect_adjacent(mesh, half_edges);
+}
+
+// Compares the answer and the outcome with the bare list of triangles without the one at the vertex.
+void remove_ear_if_possible(PatchMesh& mesh, Index vertex, std::map<std::string, int>& cases) {
+  std::set<Triangle> after;
+  std::vector<Index> at_vertex;
+  for (Index t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle& c = mesh.triangles()[t];
+    if (mesh.alive(t) && std::count(c.begin(), c.end(), vertex)) at_vertex.push_back(t);
+  }
+  bool hangs_together = false;
+  for (Index k = 0; at_vertex.size() == 1 && k < 3; ++k)
+    hangs_together |= !mesh.is_boundary(3 * at_vertex[0] + k);
+  ASSERT_EQ(mesh.can_remove_ear(vertex), hangs_together && !mesh.on_rim(vertex));
+  if (!mesh.can_remove_ear(vertex)) return;
+  ++cases["ear"];
+  after = triangles_of(mesh);
+  Triangle gone = mesh.triangles()[at_vertex[0]];
+  std::rotate(gone.begin(), std::min_element(gone.begin(), gone.end()), gone.end());
+  after.erase(gone);
+  mesh.remove_ear(vertex);
+  ASSERT_EQ(triangles_of(mesh), after);
+  ASSERT_FALSE(mesh.vertex_alive(vertex));
+}
+
+TEST(PatchMesh, TrianglesAtTheBoundaryKeepAManifold) {
+  std::map<std::string, int> cases;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    std::mt19937 random(seed);
+    PatchMesh mesh = with_steiner_points(6 + seed, seed % 2 == 0 ? 3 + seed / 2 : 0);
+    for (int step = 0; step < 60; ++step) {
+      const Index h = random() % static_cast<Index>(3 * mesh.triangle_count());
+      if (!mesh.alive(h / 3)) continue;
+      const Index choice = random() % 6;
+      if (choice < 3) {
+        ASSERT_NO_FATAL_FAILURE(fill_if_possible(mesh, mesh.origin(h), cases)) << "seed " << seed;
+        ASSERT_NO_FATAL_FAILURE(remove_ear_if_possible(mesh, mesh.origin(h), cases)) << "seed " << seed;
+      } else if (mesh.is_boundary(h)) {
+        if (mesh.can_collapse_at_boundary(h, true)) mesh.collapse_at_boundary(h, true);
+      } else if (choice < 5) {
+        const Index c = mesh.apex(h), d = mesh.apex(mesh.opposite(h));
+        if (c != d && !mesh.joined(c, d)) mesh.flip(h);
+      } else {
+        mesh.split(h, Vector3::Zero());
+      }
+      Sides half_edges;
+      ASSERT_NO_FATAL_FAILURE(expect_adjacent(mesh, half_edges)) << "seed " << seed << " step " << step;
+    }
+  }
+  for (const char* name : {"on the rim", "inside", "filled", "refused"}) EXPECT_GT(cases[name], 20) << name;
+  EXPECT_GT(cases["ear"], 5);
+}
+
+// Its neighbours are joined already, by the third side of its only triangle.
+TEST(PatchMesh, TheTipOfAnEarStaysAtTheBoundary) {
+  PatchMesh mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 3, {{0, 1, 2}, {0, 2, 3}});
+  EXPECT_EQ(mesh.arriving_along_boundary(3), 4u) << "from 2";
+  EXPECT_EQ(mesh.leaving_along_boundary(3), 5u) << "to 0";
+  EXPECT_FALSE(mesh.can_fill_at_boundary(3)) << "2 and 0 are joined";
+  EXPECT_FALSE(mesh.can_fill_at_boundary(1)) << "on the rim";
+  PatchMesh fan({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3, 0.3, 0}}, 4,
+                {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}});
+  ASSERT_TRUE(fan.can_fill_at_boundary(4));
+  EXPECT_EQ(fan.fill_at_boundary(4), 3u);
+  EXPECT_EQ(fan.triangles()[3], (Triangle{3, 0, 4}));
+}
+
 }  // namespace
 }  // namespace meshcomplete

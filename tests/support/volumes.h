@@ -3,16 +3,19 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/patch.h"
 #include "common/core/patch_check.h"
 #include "filter_atomicvolumes/decomposition.h"
 #include "filter_atomicvolumes/labelling.h"
@@ -120,6 +123,52 @@ inline TriangleMesh shell_with_hole(bool hole_within) {
   const TriangleMesh inner = hole_within ? sphere_with_hole(2, 0.7) : icosphere(2);
   return join(outer, flipped(scaled(inner, 0.5)));
 }
+
+/// A sphere with a hole, one of its vertices next to the rim pushed through a face not far from it, in many
+/// ways for each of so many vertices.
+inline std::vector<TriangleMesh> folded_meshes(std::size_t vertices) {
+  const TriangleMesh sphere = sphere_with_hole(2, 0.6);
+  std::vector<char> at_rim(sphere.vertices.size(), 0);
+  for (Index h : build_topology(sphere).boundary_half_edges) at_rim[sphere.triangles[h / 3][h % 3]] = 1;
+  std::set<Index> next_to_rim;
+  for (const Triangle& t : sphere.triangles)
+    if (at_rim[t[0]] || at_rim[t[1]] || at_rim[t[2]])
+      for (Index v : t)
+        if (!at_rim[v] && next_to_rim.size() < vertices) next_to_rim.insert(v);
+  std::vector<TriangleMesh> meshes;
+  for (Index vertex : next_to_rim)
+    for (const Triangle& t : sphere.triangles) {
+      const Vector3 middle = (sphere.vertices[t[0]] + sphere.vertices[t[1]] + sphere.vertices[t[2]]) / 3;
+      if (std::count(t.begin(), t.end(), vertex) || (middle - sphere.vertices[vertex]).norm() > 0.6) continue;
+      meshes.push_back(sphere);
+      meshes.back().vertices[vertex] = as_stored(1.05 * middle);
+    }
+  return meshes;
+}
+
+/// A sphere whose upper pole is two vertices, each with five faces: between them two opposite faces are
+/// missing, so that two holes touch there.
+struct SplitPole {
+  TriangleMesh mesh = uv_sphere(8, 12);
+  Index original = 0, copy = static_cast<Index>(mesh.vertices.size());
+
+  SplitPole() {
+    while (mesh.vertices[original][2] < 0.999) ++original;
+    mesh.vertices.push_back(mesh.vertices[original]);
+    for (Triangle& t : mesh.triangles) {
+      if (std::count(t.begin(), t.end(), original) == 0) continue;
+      const Vector3 middle = mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]];
+      const double angle = std::atan2(middle[1], middle[0]) * 180 / 3.14159265;
+      if ((0 < angle && angle < 30) || angle < -150)
+        t.fill(original);
+      else if (angle > 0)
+        std::replace(t.begin(), t.end(), original, copy);
+    }
+    const auto repeats = [](const Triangle& t) { return t[0] == t[1]; };
+    mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), repeats),
+                         mesh.triangles.end());
+  }
+};
 
 struct NamedMesh {
   std::string name;
