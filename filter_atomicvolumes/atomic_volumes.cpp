@@ -231,15 +231,17 @@ void Run::take_pieces(std::vector<PatchPiece> pieces) {
     if (is_targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
 }
 
-// The loops that another octree may close.
+// The loops that another octree may close. Where space could not be divided in one of several octrees, it
+// could not in any of them, or another one would have been taken.
 std::vector<char> Run::left_open() const {
+  const bool may_divide = options_.shifts == 1;
   std::vector<char> open(loops_.size(), 0), reached(loops_.size(), 0);
   for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
     const bool defect =
         std::any_of(group.begin(), group.end(), [&](std::size_t i) { return !pieces_[i].defect.empty(); });
     for (std::size_t loop : loops_of(pieces_, group)) {
       reached[loop] = 1;
-      open[loop] = defect || report_.holes[loop].reason == describe(Sheet::Flaw::open);
+      open[loop] = defect || (may_divide && report_.holes[loop].reason == describe(Sheet::Flaw::open));
     }
   }
   for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= is_targeted(report_.holes[i]) && !reached[i];
