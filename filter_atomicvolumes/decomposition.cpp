@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -13,16 +14,24 @@
 namespace meshcomplete {
 namespace {
 
+// So many triangles are handed on from a cube to its parts, so that these need not look for them in the whole
+// mesh.
+constexpr std::size_t most_handed_on = 512;
+
+using Triangles = std::shared_ptr<const std::vector<Index>>;
+
 // A cube to be looked at, with the part of the boundary that meets it.
 struct Pending {
   Index cube;
   std::vector<Index> vertices, edges;  // boundary vertices in it, boundary half-edges that meet it
   bool split = false;                  // whatever it holds
+  Triangles near = nullptr;            // all triangles that meet it, and others; null when not known
 };
 
 struct Verdict {
   bool split = false;
   Volume volume;
+  Triangles near = nullptr;  // of a cube that is split
 };
 
 class Decomposer {
@@ -35,9 +44,12 @@ class Decomposer {
   Pending at(Index leaf) const;
 
  private:
+  template <class Visit>
+  void triangles_in(const Pending& pending, const LatticeBox& box, Visit&& visit) const;
+  Triangles near(const Pending& pending) const;
   Verdict judge(const Pending& pending) const;
   Verdict judge_hole(const Pending& pending, const LatticeBox& box) const;
-  std::array<Pending, 8> divide(const Pending& parent, Index first_child) const;
+  std::array<Pending, 8> divide(const Pending& parent, const Triangles& near, Index first_child) const;
 
   const LatticeMesh& mesh_;
   const DecompositionOptions& options_;
@@ -78,6 +90,27 @@ Pending Decomposer::at(Index leaf) const {
   return pending;
 }
 
+// Calls `visit` for every triangle that meets the cube until it returns false.
+template <class Visit>
+void Decomposer::triangles_in(const Pending& pending, const LatticeBox& box, Visit&& visit) const {
+  if (!pending.near) {
+    mesh_.triangles_in(box, [&](Index t, const LatticeTriangle&) { return visit(t); });
+    return;
+  }
+  for (Index t : *pending.near)
+    if (meets(mesh_.triangle(t), box) && !visit(t)) return;
+}
+
+// The triangles of a cube for its parts; null when they are too many.
+Triangles Decomposer::near(const Pending& pending) const {
+  auto list = std::make_shared<std::vector<Index>>();
+  triangles_in(pending, result_.octree.box(pending.cube), [&](Index t) {
+    list->push_back(t);
+    return list->size() <= most_handed_on;
+  });
+  return list->size() <= most_handed_on ? list : nullptr;
+}
+
 Verdict Decomposer::judge_hole(const Pending& pending, const LatticeBox& box) const {
   Verdict verdict;
   Volume& volume = verdict.volume;
@@ -92,7 +125,7 @@ Verdict Decomposer::judge_hole(const Pending& pending, const LatticeBox& box) co
     verdict.split = true;
     return verdict;
   }
-  mesh_.triangles_in(box, [&](Index t, const LatticeTriangle&) {
+  triangles_in(pending, box, [&](Index t) {
     volume.triangles.push_back(t);
     const Triangle& corners = mesh_.mesh.triangles[t];
     trivial &= at_vertex ? std::find(corners.begin(), corners.end(), volume.apex) != corners.end()
@@ -115,7 +148,7 @@ Verdict Decomposer::judge(const Pending& pending) const {
     return verdict;
   }
   if (!pending.edges.empty()) return judge_hole(pending, box);
-  mesh_.triangles_in(box, [&](Index t, const LatticeTriangle&) {
+  triangles_in(pending, box, [&](Index t) {
     verdict.volume.triangles.push_back(t);
     return true;
   });
@@ -129,11 +162,13 @@ Verdict Decomposer::judge(const Pending& pending) const {
   return verdict;
 }
 
-std::array<Pending, 8> Decomposer::divide(const Pending& parent, Index first_child) const {
+std::array<Pending, 8> Decomposer::divide(const Pending& parent, const Triangles& near,
+                                          Index first_child) const {
   std::array<Pending, 8> children;
   for (Index place = 0; place < 8; ++place) {
     Pending& child = children[place];
     child.cube = first_child + place;
+    child.near = near;
     const LatticeBox box = result_.octree.box(child.cube);
     for (Index v : parent.vertices)
       if (box.contains(mesh_.vertex(v))) child.vertices.push_back(v);
@@ -155,6 +190,7 @@ void Decomposer::run(std::vector<Pending> level, const Progress& progress) {
       try {
         progress.check();
         verdicts[i] = judge(level[i]);
+        if (verdicts[i].split) verdicts[i].near = near(level[i]);
       } catch (...) {
         const std::lock_guard<std::mutex> lock(mutex);
         if (!error) error = std::current_exception();
@@ -177,7 +213,7 @@ void Decomposer::run(std::vector<Pending> level, const Progress& progress) {
       result_.volumes[cube] = Volume();
       const Index first = result_.octree.split(cube);
       result_.volumes.resize(result_.octree.size());
-      for (Pending& child : divide(level[i], first)) next.push_back(std::move(child));
+      for (Pending& child : divide(level[i], verdicts[i].near, first)) next.push_back(std::move(child));
     }
     level = std::move(next);
     done += 0.5 * (1 - done);

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <queue>
+#include <set>
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/core/guarded_remeshing.h"
+#include "common/core/patch.h"
 #include "common/core/patch_fairing.h"
 #include "common/core/patch_remeshing.h"
 
@@ -50,6 +53,31 @@ std::vector<double> spread(const PatchMesh& patch, const std::vector<double>& ri
   return size;
 }
 
+// Splits edges from one vertex to two places of a rim vertex that the rim visits more than once: in the mesh
+// they would be one edge with four faces.
+void split_doubled_edges(PatchMesh& patch, const Rim& rim) {
+  std::map<std::array<double, 3>, std::vector<Index>> places;
+  for (Index v = 0; v < patch.rim_size(); ++v)
+    places[{rim.positions[v][0], rim.positions[v][1], rim.positions[v][2]}].push_back(v);
+  for (const auto& [position, same] : places) {
+    if (same.size() < 2) continue;
+    std::set<Index> reached;
+    for (Index place : same) {
+      std::vector<Index> doubled;
+      patch.for_neighbours(place, [&](Index v) {
+        if (!patch.on_rim(v) && !reached.insert(v).second) doubled.push_back(v);
+      });
+      for (Index v : doubled) {
+        Index edge = PatchMesh::none;
+        patch.for_outgoing(v, [&](Index h) {
+          if (patch.target(h) == place) edge = h;
+        });
+        patch.split(edge, as_stored(0.5 * (patch.position(v) + patch.position(place))));
+      }
+    }
+  }
+}
+
 class Finisher {
  public:
   Finisher(const PatchMesh& rough, const FinishingOptions& options, const FinishingContext& context)
@@ -57,7 +85,7 @@ class Finisher {
     if (options.edge_length) std::fill(wanted_.begin(), wanted_.end(), *options.edge_length);
   }
 
-  FinishedPatch freely(const Progress& progress);
+  FinishedPatch freely(const std::optional<SurfaceEnergy>& energy, const Progress& progress);
   FinishedPatch guarded(const Progress& progress);
 
  private:
@@ -67,7 +95,7 @@ class Finisher {
   std::vector<double> wanted_;
 };
 
-FinishedPatch Finisher::freely(const Progress& progress) {
+FinishedPatch Finisher::freely(const std::optional<SurfaceEnergy>& energy, const Progress& progress) {
   FinishedPatch result{rough_, "", ""};
   PatchMesh& patch = result.mesh;
   patch.compact();
@@ -75,17 +103,17 @@ FinishedPatch Finisher::freely(const Progress& progress) {
   RemeshOptions remeshing;
   remeshing.forbidden = context_.rim.forbidden;
   remeshing.rounds = rounds_between;
-  if (options_.fairing)
-    fair(patch, context_.rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
+  if (energy) fair(patch, context_.rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
   if (options_.remesh) remesh(patch, target, remeshing, progress);
-  for (int i = 0; options_.fairing && i < solves; ++i) {
-    fair(patch, context_.rim, *options_.fairing, LaplacianWeights::cotangent, progress);
+  for (int i = 0; energy && i < solves; ++i) {
+    fair(patch, context_.rim, *energy, LaplacianWeights::cotangent, progress);
     if (options_.remesh && i + 1 < solves) remesh(patch, target, remeshing, progress);
   }
+  split_doubled_edges(patch, context_.rim);
   MendingOptions mending{context_.rim, wanted_, context_.input, context_.obstacles};
   const Mending mended = mend(patch, mending, context_.find, progress);
   result.defect = mended.last.defect;
-  result.route = options_.fairing ? name(*options_.fairing) : "remeshed";
+  result.route = energy ? name(*energy) : "remeshed";
   if (mended.changed) result.route += ", mended locally";
   return result;
 }
@@ -107,6 +135,7 @@ FinishedPatch Finisher::guarded(const Progress& progress) {
     GuardedPatch guard(patch, context_.input, context_.rim.forbidden, context_.obstacles);
     guarded_approach(guard, goal.positions(), sweeps, progress);
   }
+  split_doubled_edges(patch, context_.rim);
   result.defect = context_.find(patch).defect;
   result.route = options_.fairing ? std::string(name(*options_.fairing)) + " in guarded steps"
                                   : "remeshed in guarded steps";
@@ -120,8 +149,14 @@ FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, co
   Finisher finisher(rough, options, context);
   if (options.remesh || options.fairing) {
     try {
-      FinishedPatch free = finisher.freely(progress);
+      FinishedPatch free = finisher.freely(options.fairing, progress);
       if (free.defect.empty()) return free;
+      // A membrane stays close to the faces of the volumes, which meet nothing.
+      if (options.fairing && *options.fairing != SurfaceEnergy::membrane) {
+        FinishedPatch membrane = finisher.freely(SurfaceEnergy::membrane, progress);
+        membrane.route += std::string(" instead of ") + name(*options.fairing);
+        if (membrane.defect.empty()) return membrane;
+      }
     } catch (const Cancelled&) {
       throw;
     } catch (const CompletionError&) {

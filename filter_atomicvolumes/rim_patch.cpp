@@ -68,6 +68,71 @@ double least_stored_length(const Vector3& a, const Vector3& b) {
   return least_stored_edge * most * std::numeric_limits<float>::epsilon();
 }
 
+// Pockets: what an edge between two points of one boundary edge cuts off the patch, on the side of that edge.
+// It lies over a stretch of a straight line, so that the patch does without it.
+class PocketRemover {
+ public:
+  PocketRemover(PatchMesh& mesh, const Rim& rim)
+      : mesh_(mesh), rim_(rim), edge_of_(mesh.vertex_count(), none) {
+    for (Index place = 0; place < mesh.rim_size(); ++place)
+      for (Index v = mesh.target(mesh.leaving_along_boundary(place)); !mesh.on_rim(v);
+           v = mesh.target(mesh.leaving_along_boundary(v)))
+        edge_of_[v] = place;
+  }
+
+  // Returns whether there were any.
+  bool run() {
+    std::vector<char> gone(mesh_.triangle_count(), 0);
+    bool any = false;
+    for (Index h = 0; h < 3 * mesh_.triangle_count(); ++h)
+      if (mesh_.alive(h / 3) && !mesh_.is_boundary(h) && !gone[h / 3]) any |= cut_off(h, gone);
+    if (!any) return false;
+    std::vector<Triangle> triangles;
+    for (Index t = 0; t < mesh_.triangle_count(); ++t)
+      if (mesh_.alive(t) && !gone[t]) triangles.push_back(mesh_.triangles()[t]);
+    mesh_ = PatchMesh(mesh_.positions(), mesh_.rim_size(), std::move(triangles));
+    mesh_.compact();
+    return true;
+  }
+
+ private:
+  bool on_edge(Index v, Index edge) const {
+    return mesh_.on_rim(v) ? v == edge || v == rim_.next[edge] : edge_of_[v] == edge;
+  }
+  // Takes out what the half-edge cuts off if it goes from a point of a boundary edge to an earlier one.
+  bool cut_off(Index h, std::vector<char>& gone) const {
+    const Index from = mesh_.target(h), to = mesh_.origin(h);
+    if (!mesh_.at_boundary(from) || !mesh_.at_boundary(to)) return false;
+    const Index edge = mesh_.on_rim(from) ? from : edge_of_[from];
+    if (!on_edge(to, edge) || to == edge) return false;
+    std::size_t path = 0;
+    for (Index v = from; v != to; ++path) {
+      if (v != from && mesh_.on_rim(v)) return false;
+      v = mesh_.target(mesh_.leaving_along_boundary(v));
+    }
+    // The half-edge closes the path to a loop round the pocket.
+    std::vector<Index> pocket = {h / 3};
+    std::vector<char> seen(mesh_.triangle_count(), 0);
+    seen[h / 3] = 1;
+    std::size_t boundary = 0;
+    for (std::size_t i = 0; i < pocket.size(); ++i)
+      for (Index side = 3 * pocket[i]; side < 3 * pocket[i] + 3; ++side) {
+        const Index other = mesh_.opposite(side);
+        if (other == none) ++boundary;
+        if (other == none || side == h || seen[other / 3]) continue;
+        seen[other / 3] = 1;
+        pocket.push_back(other / 3);
+      }
+    if (boundary != path) return false;
+    for (Index t : pocket) gone[t] = 1;
+    return true;
+  }
+
+  PatchMesh& mesh_;
+  const Rim& rim_;
+  std::vector<Index> edge_of_;  // the place in the rim where the boundary edge of a Steiner point begins
+};
+
 // Collapses the edges that are too short to be stored, as far as the patch stays a manifold: towards the rim,
 // then towards Steiner points. What that tangles is so small that hardly anything is, and it is mended later.
 void remove_short_edges(PatchMesh& mesh) {
@@ -120,6 +185,7 @@ class SteinerRemover {
   void shrink_fan(Index steiner);
   void relax_around(Index steiner);
   bool lift(Index steiner);
+  bool force(Index steiner);
 
   RimPatch& patch_;
   PatchMesh& mesh_;
@@ -256,6 +322,28 @@ bool SteinerRemover::lift(Index steiner) {
   return false;
 }
 
+// Takes the point off the boundary in any way that leaves a manifold. The guard does not know of it.
+bool SteinerRemover::force(Index steiner) {
+  if (mesh_.can_remove_ear(steiner)) {
+    mesh_.remove_ear(steiner);
+    return true;
+  }
+  const Index out = mesh_.leaving_along_boundary(steiner), in = mesh_.arriving_along_boundary(steiner);
+  for (const bool forward : {true, false}) {
+    const Index h = forward ? out : in, kept = forward ? mesh_.target(out) : mesh_.origin(in);
+    if (makes_chord(steiner, kept) || !mesh_.can_collapse_at_boundary(h, forward)) continue;
+    mesh_.collapse_at_boundary(h, forward);
+    return true;
+  }
+  if (!mesh_.can_fill_at_boundary(steiner)) return false;
+  const Triangle& t = mesh_.triangles()[out / 3];
+  const Vector3 middle = (mesh_.position(t[0]) + mesh_.position(t[1]) + mesh_.position(t[2])) / 3;
+  mesh_.move(steiner, as_stored(0.5 * (mesh_.position(steiner) + middle)));
+  mesh_.fill_at_boundary(steiner);
+  edge_of_[steiner] = none;
+  return true;
+}
+
 std::size_t SteinerRemover::run(const Progress& progress) {
   std::vector<Index> unrounded;
   for (Index v = static_cast<Index>(mesh_.rim_size()); v < mesh_.vertex_count(); ++v)
@@ -281,6 +369,11 @@ std::size_t SteinerRemover::run(const Progress& progress) {
     }
     steiner_ = std::move(left);
   }
+  // Where the patch meets something at the rim already no guarded step is left. What follows may meet more;
+  // it is for those who finish the patch to mend.
+  steiner_.erase(
+      std::remove_if(steiner_.begin(), steiner_.end(), [&](Index steiner) { return force(steiner); }),
+      steiner_.end());
   return steiner_.size();
 }
 
@@ -323,7 +416,8 @@ RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, 
   Rim rim = collect_rim(mesh, topology, loops);
   PatchMesh patch(std::move(positions), rim_vertices.size(), std::move(triangles));
   if (!cut) {
-    remove_short_edges(patch);
+    do remove_short_edges(patch);
+    while (PocketRemover(patch, rim).run());
     for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
       if (!patch.at_boundary(v)) patch.move(v, as_stored(patch.position(v)));
   }

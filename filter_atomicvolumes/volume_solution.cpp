@@ -25,9 +25,9 @@ constexpr double margin = 0.05;
 // meshes that are degenerate themselves.
 constexpr int most_restarts = 20;
 
-// Cubes of fewer steps of what can be stored make faces that cannot: so often another position is tried then,
+// Cubes of fewer steps of what can be stored make faces that cannot: another position is tried then, so often,
 // unless the mesh itself has vertices that close.
-constexpr int most_fine_restarts = 3;
+constexpr int most_fine_restarts = 1;
 constexpr double least_steps = 8;
 
 // Crossed cubes that disagree, and volumes with contradicting constraints, are split so often; then the

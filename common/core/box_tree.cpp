@@ -43,16 +43,6 @@ struct Keyed {
 
 }  // namespace
 
-Box bounding_box(const Vector3& a, const Vector3& b, const Vector3& c) {
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    if (!std::isfinite(a[k]) || !std::isfinite(b[k]) || !std::isfinite(c[k])) return Box();
-    box.low[k] = std::min({a[k], b[k], c[k]});
-    box.high[k] = std::max({a[k], b[k], c[k]});
-  }
-  return box;
-}
-
 std::vector<Index> spatial_order(const std::vector<Box>& boxes) {
   Box all;
   for (const Box& box : boxes) all.include(box);

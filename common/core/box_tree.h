@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -35,7 +36,16 @@ struct Box {
 
 /// The box of three points; empty when a coordinate is infinite or not a number, so that such a triangle
 /// meets nothing.
-Box bounding_box(const Vector3& a, const Vector3& b, const Vector3& c);
+inline Box bounding_box(const Vector3& a, const Vector3& b, const Vector3& c) {
+  Box box;
+  for (int k = 0; k < 3; ++k) {
+    box.low[k] = std::min({a[k], b[k], c[k]});
+    box.high[k] = std::max({a[k], b[k], c[k]});
+    // A number that is none makes the difference none; so does an infinite one.
+    if (!std::isfinite((a[k] - b[k]) + (b[k] - c[k]))) return Box();
+  }
+  return box;
+}
 
 /// The numbers of the boxes in an order in which neighbours in the list are neighbours in space (along a
 /// Morton curve through the centres). Ties by number. Threaded. Cost: O(n log n).
