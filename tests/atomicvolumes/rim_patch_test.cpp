@@ -89,6 +89,31 @@ TEST(RimPatch, KnowsTheRimsOfTheSheet) {
   EXPECT_LT(gone_in_all, 50u) << "few are";
 }
 
+// A triangle more between two Steiner points of one rim edge and a third one: it has no area, and no inner
+// corner that could be moved.
+TEST(RimPatch, EarsOnARimEdgeAreTakenOff) {
+  const PlacedMesh placed(test::sphere_with_hole(2, 0.6), 1);
+  std::vector<Sheet> sheets = sheets_of(placed);
+  const auto at_rim = [](const Sheet& one) { return !one.closes.empty(); };
+  Sheet sheet = *std::find_if(sheets.begin(), sheets.end(), at_rim);
+  const std::size_t plain = make_rim_patch(placed.mesh, placed.topology, sheet).mesh.triangle_count();
+  std::size_t added = 0;
+  for (const auto& [edge, times] : test::boundary_of(sheet.triangles)) {
+    const Index from = times > 0 ? edge.first : edge.second, to = times > 0 ? edge.second : edge.first;
+    SheetVertex tip = sheet.vertices[from];
+    if (tip.rim_edge == SheetVertex::none || sheet.vertices[to].rim_edge != tip.rim_edge) continue;
+    tip.position = 0.5 * (tip.position + sheet.vertices[to].position);
+    sheet.triangles.push_back({from, static_cast<Index>(sheet.vertices.size()), to});
+    sheet.volumes.push_back(sheet.volumes[0]);
+    sheet.vertices.push_back(tip);
+    ++added;
+  }
+  ASSERT_GT(added, 3u);
+  const RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);
+  EXPECT_EQ(ears(patch.mesh), 0u);
+  EXPECT_EQ(patch.mesh.triangle_count(), plain);
+}
+
 /// What is left of the holes when all sheets are rim patches without Steiner points: nothing.
 void expect_completed(const PlacedMesh& placed) {
   TriangleMesh whole = placed.mesh;

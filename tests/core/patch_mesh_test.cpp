@@ -396,6 +396,10 @@ TEST(PatchMesh, TheTipOfAnEarStaysAtTheBoundary) {
   EXPECT_EQ(mesh.arriving_along_boundary(3), 4u) << "from 2";
   EXPECT_EQ(mesh.leaving_along_boundary(3), 5u) << "to 0";
   EXPECT_FALSE(mesh.can_fill_at_boundary(3)) << "2 and 0 are joined";
+  EXPECT_TRUE(mesh.can_remove_ear(3));
+  EXPECT_FALSE(mesh.can_remove_ear(1)) << "on the rim";
+  const PatchMesh alone({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 2, {{0, 1, 2}});
+  EXPECT_FALSE(alone.can_remove_ear(2)) << "nothing would be left";
   EXPECT_FALSE(mesh.can_fill_at_boundary(1)) << "on the rim";
   PatchMesh fan({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3, 0.3, 0}}, 4,
                 {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}});
