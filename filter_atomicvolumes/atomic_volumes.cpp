@@ -22,6 +22,7 @@
 #include "filter_atomicvolumes/patch_pieces.h"
 #include "filter_atomicvolumes/piece_finishing.h"
 #include "filter_atomicvolumes/sheets.h"
+#include "filter_atomicvolumes/solution_poll.h"
 #include "filter_atomicvolumes/threads.h"
 #include "filter_atomicvolumes/volume_solution.h"
 
@@ -102,7 +103,7 @@ class Run {
   VolumeSolution solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const;
   std::vector<Sheet> sheets_of(const LabelledSurface& surface) const;
   std::vector<PatchPiece> pieces_of(const LabelledSurface& surface) const;
-  std::size_t flawed_edges(const VolumeSolution& solution) const;
+  SolutionVote vote(std::size_t shift, const VolumeSolution& solution) const;
   VolumeSolution best_solution(const PreparedConstraints& constraints, const Progress& progress) const;
   void take_pieces(std::vector<PatchPiece> pieces);
   std::string obstacle(const std::vector<std::size_t>& loops) const;
@@ -149,31 +150,29 @@ std::vector<PatchPiece> Run::pieces_of(const LabelledSurface& surface) const {
   return make_pieces(sheets_of(surface), topology_, loop_numbers_);
 }
 
-// How many edges of rims to be closed have a patch that cannot be used.
-std::size_t Run::flawed_edges(const VolumeSolution& solution) const {
-  if (!divisible_ &&
-      std::none_of(solution.decomposition.volumes.begin(), solution.decomposition.volumes.end(),
-                   [](const Volume& v) { return v.kind == VolumeKind::unresolved; }))
-    return 0;
+SolutionVote Run::vote(std::size_t shift, const VolumeSolution& solution) const {
+  SolutionVote vote;
+  vote.number = shift;
+  // With hints a smaller patch may cost more.
+  vote.cost = solution.ties.empty() ? area(solution.surface) : solution.labelling.weight;
   const std::vector<PatchPiece> pieces = pieces_of(solution.surface);
-  std::size_t edges = 0;
   for (const std::vector<std::size_t>& group : group_by_loops(pieces)) {
-    if (flaw_of(pieces, group, loops_) == Sheet::Flaw::none) continue;
-    for (std::size_t loop : loops_of(pieces, group))
-      if (is_targeted(report_.holes[loop])) edges += loops_[loop].faces.size();
+    std::vector<std::size_t> loops = loops_of(pieces, group);
+    if (flaw_of(pieces, group, loops_) != Sheet::Flaw::none)
+      for (std::size_t loop : loops)
+        if (is_targeted(report_.holes[loop])) vote.flawed_edges += loops_[loop].faces.size();
+    loops.push_back(group.size());
+    vote.partition.push_back(std::move(loops));
   }
-  return edges;
+  std::sort(vote.partition.begin(), vote.partition.end());
+  return vote;
 }
 
-// Of several octrees that whose patch can be used for most holes, and of these the one with the patch of
-// least area, or, with hints, of least weight: other weights of different octrees cannot be compared. In
-// threads.
+// Makes the divisions in threads.
 VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const Progress& progress) const {
   const std::size_t shifts = static_cast<std::size_t>(options_.shifts);
   std::mutex mutex;
-  std::optional<VolumeSolution> best;
-  using Rank = std::tuple<std::size_t, double, std::size_t>;
-  Rank least;
+  SolutionPoll poll;
   // Large octrees one after the other, for the memory's sake: most of the work on each is in threads already.
   const std::size_t grain = topology_.boundary_half_edges.size() > most_edges_at_once ? shifts : 1;
   for_ranges(shifts, grain, progress, [&](std::size_t begin, std::size_t end) {
@@ -181,15 +180,14 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
       const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
       VolumeSolution one =
           solve(static_cast<int>(shift), constraints, progress.part(from, to, "dividing space"));
-      const Rank rank(shifts > 1 ? flawed_edges(one) : 0,
-                      one.ties.empty() ? area(one.surface) : one.labelling.weight, shift);
+      SolutionVote vote = shifts > 1 ? this->vote(shift, one) : SolutionVote();
       const std::lock_guard<std::mutex> lock(mutex);
-      if (best && least < rank) continue;
-      least = rank;
-      best.reset();
-      best.emplace(std::move(one));
+      poll.hear(std::move(vote), std::move(one));
     }
   });
+  std::optional<VolumeSolution> best = poll.take();
+  if (!best)
+    best.emplace(solve(static_cast<int>(poll.winner()), constraints, progress.part(1, 1, "dividing space")));
   smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
   return std::move(*best);
 }

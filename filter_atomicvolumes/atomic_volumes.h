@@ -61,7 +61,7 @@ struct AtomicVolumesOptions {
   std::size_t node_budget =
       5000000;  ///< graph nodes and octree leaves, at least 1000; beyond them CompletionError
   CutWeight weight = CutWeight::balanced;
-  int shifts = 3;          ///< octrees tried, 1 to 100; the patch of least area is kept
+  int shifts = 3;          ///< octrees tried, 1 to 100; see `SolutionPoll` for which is kept
   std::uint64_t seed = 1;  ///< of the octrees' random positions
   VolumeSmoothing smoothing = VolumeSmoothing::constrained;
   int smoothing_iterations = 5;  ///< 0 to 1000

@@ -45,7 +45,7 @@ std::vector<ParameterDeclaration> cut_parameters() {
           "bridges rather than caps. Balanced: in between.",
           {"Balanced", "Area", "Number of faces"}),
       integer_parameter("Shifts", "Divisions tried",
-                        "So many randomly placed divisions of space are tried; the smallest result wins.",
+                        "So many randomly placed divisions of space are tried; the smallest of the usual results wins.",
                         "divisions", 3, 1, 100),
       integer_parameter("Seed", "Seed", "Start of the random numbers.", "", 1, 0, any)};
 }

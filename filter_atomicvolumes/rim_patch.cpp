@@ -167,7 +167,10 @@ class SteinerRemover {
  public:
   SteinerRemover(RimPatch& patch, const InputNeighbourhood& input,
                  const std::vector<std::array<Vector3, 3>>& obstacles)
-      : patch_(patch), mesh_(patch.mesh), guarded_(patch.mesh, input, patch.rim.forbidden, obstacles) {
+      : patch_(patch),
+        mesh_(patch.mesh),
+        obstacles_(obstacles),
+        guarded_(patch.mesh, input, patch.rim.forbidden, obstacles) {
     find_edges();
   }
 
@@ -189,6 +192,7 @@ class SteinerRemover {
 
   RimPatch& patch_;
   PatchMesh& mesh_;
+  const std::vector<std::array<Vector3, 3>>& obstacles_;
   GuardedPatch guarded_;
   std::vector<Index> steiner_;
   std::vector<Index> edge_of_;   // of each Steiner point: the place in the rim where its boundary edge begins

@@ -33,9 +33,11 @@ RimPatch make_rim_patch(const TriangleMesh& mesh, const MeshTopology& topology, 
 
 /// Moves the Steiner points of the rims onto their rim neighbours, one by one, with exact tests, until the
 /// patch meets the mesh's own edges one to one; where that is not possible at once, after flips round them.
-/// Never makes a chord between two points of one boundary edge, nor an edge that the mesh has. Source: the
-/// paper leaves them in; a patch that shares no edges with the mesh is not watertight in floats. Returns how
-/// many are left. Cost: O(triangles at rims * triangles near each).
+/// Without obstacles, points for which there is no such step are then taken out in any way that leaves a
+/// manifold: the patch can meet something there. Never makes a chord between two points of one boundary edge,
+/// nor an edge that the mesh has. Source: the paper leaves them in; a patch that shares no edges with the
+/// mesh is not watertight in floats. Returns how many are left. Cost: O(triangles at rims * triangles near
+/// each).
 std::size_t remove_steiner_points(RimPatch& patch, const InputNeighbourhood& input,
                                   const std::vector<std::array<Vector3, 3>>& obstacles,
                                   const Progress& progress = Progress());
