@@ -39,13 +39,11 @@ std::vector<ParameterDeclaration> cut_parameters() {
       integer_parameter("NodeBudget", "Most volumes",
                         "The filter stops with a message when it would need more volumes than this.",
                         "volumes", 5000000, 1000, any),
-      choice_parameter(
-          "Weight", "Make small",
-          "What there is as little of as possible. Area: caps rather than bridges. Number of faces: "
-          "bridges rather than caps. Balanced: in between.",
-          {"Balanced", "Area", "Number of faces"}),
-      integer_parameter("Shifts", "Divisions tried",
-                        "So many randomly placed divisions of space are tried; the smallest of the usual results wins.",
+      choice_parameter("Weight", "Make small",
+                       "What there is little of in the end. Area: caps rather than bridges. Number of faces: "
+                       "bridges rather than caps. Balanced: in between.",
+                       {"Balanced", "Area", "Number of faces"}),
+      integer_parameter("Shifts", "Divisions tried", "So many randomly placed divisions of space are tried.",
                         "divisions", 3, 1, 100),
       integer_parameter("Seed", "Seed", "Start of the random numbers.", "", 1, 0, any)};
 }
