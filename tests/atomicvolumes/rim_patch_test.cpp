@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/triangle_intersection.h"
 #include "filter_atomicvolumes/extraction.h"
 #include "filter_atomicvolumes/labelling.h"
 #include "tests/support/complexes.h"
@@ -157,19 +158,31 @@ TEST(RimPatch, ObstaclesAreNotMet) {
     RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);
     const std::vector<Index> before = steiner_points(patch.mesh);
     ASSERT_FALSE(before.empty());
-    // A needle beside every Steiner point: whatever sweeps over it is refused.
+    const auto met = [](const RimPatch& one, const std::vector<std::array<Vector3, 3>>& needles) {
+      std::vector<std::array<Vector3, 3>> triangles;
+      for (const Triangle& t : one.mesh.triangles())
+        if (t[0] != PatchMesh::none)
+          triangles.push_back({one.mesh.position(t[0]), one.mesh.position(t[1]), one.mesh.position(t[2])});
+      return improper_pairs_between(triangles, needles).size();
+    };
+    // Needles that the patch does not meet yet, and meets where its points go when nobody minds.
+    RimPatch heedless = patch;
+    remove_steiner_points(heedless, placed.neighbourhood, {});
     std::vector<std::array<Vector3, 3>> obstacles;
-    for (Index v : before) {
-      Vector3 middle = Vector3::Zero();
-      double count = 0;
-      patch.mesh.for_neighbours(v, [&](Index w) {
-        middle += patch.mesh.position(w);
-        ++count;
-      });
-      const Vector3 p = patch.mesh.position(v) + 1e-3 * (middle / count - patch.mesh.position(v));
-      obstacles.push_back({p, p + Vector3(0, 0, 1e-5), p + Vector3(1e-5, 0, 1e-5)});
+    for (const Triangle& t : heedless.mesh.triangles()) {
+      if (t[0] == PatchMesh::none) continue;
+      const Vector3 p =
+          (heedless.mesh.position(t[0]) + heedless.mesh.position(t[1]) + heedless.mesh.position(t[2])) / 3;
+      const Vector3 across =
+          1e-4 *
+          heedless.mesh.area_normal(static_cast<Index>(&t - &heedless.mesh.triangles()[0])).normalized();
+      const std::array<Vector3, 3> needle = {p - across, p + across, p + across + Vector3(1e-6, 2e-6, 3e-6)};
+      if (met(patch, {needle}) == 0) obstacles.push_back(needle);
     }
-    EXPECT_GT(remove_steiner_points(patch, placed.neighbourhood, obstacles), 0u);
+    ASSERT_FALSE(obstacles.empty());
+    EXPECT_GT(met(heedless, obstacles), 0u);
+    remove_steiner_points(patch, placed.neighbourhood, obstacles);
+    EXPECT_EQ(met(patch, obstacles), 0u);
     EXPECT_EQ(patch.steiner_points, steiner_points(patch.mesh).size());
   }
 }
