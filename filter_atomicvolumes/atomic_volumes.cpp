@@ -100,7 +100,8 @@ class Run {
   const TriangleMesh& divided_mesh() const { return divisible_ ? divisible_->mesh : mesh_; }
   const MeshTopology& divided_topology() const { return divisible_ ? divisible_->topology : topology_; }
   const InputNeighbourhood& divided() const { return divisible_ ? divisible_->neighbourhood : input_; }
-  VolumeSolution solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const;
+  VolumeSolution solve(int shift, const AtomicVolumesOptions& options, const PreparedConstraints& constraints,
+                       const Progress& progress) const;
   std::vector<Sheet> sheets_of(const LabelledSurface& surface) const;
   std::vector<PatchPiece> pieces_of(const LabelledSurface& surface) const;
   SolutionVote vote(std::size_t shift, const VolumeSolution& solution) const;
@@ -121,6 +122,7 @@ class Run {
   std::unique_ptr<DivisibleMesh> divisible_;  // null: space is divided by the mesh itself
   CompletionReport& report_;
   std::vector<PatchPiece> pieces_;
+  std::vector<char> blocked_;  // loops whose patch has another one in it that is not to be closed
 };
 
 // Rims whose edges lie on each other have nothing between them that a patch could fill.
@@ -137,9 +139,10 @@ void Run::refuse_sewn_loops() {
     }
 }
 
-VolumeSolution Run::solve(int shift, const PreparedConstraints& constraints, const Progress& progress) const {
-  return solve_volumes(divided_mesh(), divided_topology(), divided(), options_, constraints,
-                       seed_of_division(options_, shift), progress);
+VolumeSolution Run::solve(int shift, const AtomicVolumesOptions& options,
+                          const PreparedConstraints& constraints, const Progress& progress) const {
+  return solve_volumes(divided_mesh(), divided_topology(), divided(), options, constraints,
+                       seed_of_division(options, shift), progress);
 }
 
 std::vector<Sheet> Run::sheets_of(const LabelledSurface& surface) const {
@@ -179,7 +182,7 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
     for (std::size_t shift = begin; shift < end; ++shift) {
       const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
       VolumeSolution one =
-          solve(static_cast<int>(shift), constraints, progress.part(from, to, "dividing space"));
+          solve(static_cast<int>(shift), options_, constraints, progress.part(from, to, "dividing space"));
       SolutionVote vote = shifts > 1 ? this->vote(shift, one) : SolutionVote();
       const std::lock_guard<std::mutex> lock(mutex);
       poll.hear(std::move(vote), std::move(one));
@@ -187,7 +190,8 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
   });
   std::optional<VolumeSolution> best = poll.take();
   if (!best)
-    best.emplace(solve(static_cast<int>(poll.winner()), constraints, progress.part(1, 1, "dividing space")));
+    best.emplace(
+        solve(static_cast<int>(poll.winner()), options_, constraints, progress.part(1, 1, "dividing space")));
   smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
   return std::move(*best);
 }
@@ -213,6 +217,7 @@ std::string Run::obstacle(const std::vector<std::size_t>& loops) const {
 
 void Run::take_pieces(std::vector<PatchPiece> pieces) {
   pieces_ = std::move(pieces);
+  blocked_.assign(loops_.size(), 0);
   std::map<std::size_t, std::string> reasons;
   for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
     const std::vector<std::size_t> loops = loops_of(pieces_, group);
@@ -220,6 +225,7 @@ void Run::take_pieces(std::vector<PatchPiece> pieces) {
                      [&](std::size_t loop) { return is_targeted(report_.holes[loop]); }))
       continue;
     std::string reason = obstacle(loops);
+    for (std::size_t loop : loops) blocked_[loop] = !reason.empty() && is_targeted(report_.holes[loop]);
     if (reason.empty()) reason = describe(flaw_of(pieces_, group, loops_));
     for (std::size_t i : group) pieces_[i].wanted = reason.empty();
     for (std::size_t loop : loops)
@@ -229,8 +235,8 @@ void Run::take_pieces(std::vector<PatchPiece> pieces) {
     if (is_targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
 }
 
-// The loops that another octree may close. Where space could not be divided in one of several octrees, it
-// could not in any of them, or another one would have been taken.
+// The loops that another octree, or a patch that joins less, may close. Where space could not be divided in
+// one of several octrees, it could not in any of them, or another one would have been taken.
 std::vector<char> Run::left_open() const {
   const bool may_divide = options_.shifts == 1;
   std::vector<char> open(loops_.size(), 0), reached(loops_.size(), 0);
@@ -239,7 +245,8 @@ std::vector<char> Run::left_open() const {
         std::any_of(group.begin(), group.end(), [&](std::size_t i) { return !pieces_[i].defect.empty(); });
     for (std::size_t loop : loops_of(pieces_, group)) {
       reached[loop] = 1;
-      open[loop] = defect || (may_divide && report_.holes[loop].reason == describe(Sheet::Flaw::open));
+      open[loop] = defect || blocked_[loop] ||
+                   (may_divide && report_.holes[loop].reason == describe(Sheet::Flaw::open));
     }
   }
   for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= is_targeted(report_.holes[i]) && !reached[i];
@@ -294,13 +301,18 @@ bool Run::try_others(const PreparedConstraints& constraints, const PieceFinisher
                      const Progress& progress) {
   const char* const stage = "trying another octree";
   std::vector<char> open = left_open();
+  // The least area joins the fewest rims.
+  const bool any_blocked = std::find(blocked_.begin(), blocked_.end(), 1) != blocked_.end();
   int tries = 0;
   for (; tries < most_retries && std::find(open.begin(), open.end(), 1) != open.end(); ++tries) {
     const Progress part = progress.part(1.0 * tries / most_retries, (tries + 1.0) / most_retries, stage);
     std::vector<PatchPiece> fresh;
     {
-      VolumeSolution solution = solve(options_.shifts + tries, constraints, part.part(0, 0.5, stage));
-      smooth(solution, options_, constraints, part.part(0.5, 0.5, stage));
+      AtomicVolumesOptions options = options_;
+      if (any_blocked || tries > 0) options.weight = CutWeight::area;
+      VolumeSolution solution =
+          solve(options_.shifts + tries, options, constraints, part.part(0, 0.5, stage));
+      smooth(solution, options, constraints, part.part(0.5, 0.5, stage));
       fresh = pieces_of(solution.surface);
     }
     const std::size_t first = replace(std::move(fresh), open);

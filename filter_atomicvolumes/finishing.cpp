@@ -22,6 +22,10 @@ namespace {
 constexpr int solves = 4;
 constexpr int rounds_between = 3;
 
+// By how many times a patch may grow when it is faired, and a size that is always allowed.
+constexpr double swelling = 16;
+constexpr std::size_t least_limit = 10000;
+
 // Guarded steps towards the fair surface.
 constexpr int approaches = 3;
 constexpr int sweeps = 4;
@@ -78,6 +82,18 @@ void split_doubled_edges(PatchMesh& patch, const Rim& rim) {
   }
 }
 
+// A patch of this area at these edge lengths, and swelling: what grows beyond that has no minimum to go to.
+std::size_t most_vertices(const PatchMesh& patch, const std::vector<double>& length) {
+  double count = 0;
+  for (Index t = 0; t < patch.triangle_count(); ++t) {
+    if (!patch.alive(t)) continue;
+    double mean = 0;
+    for (Index v : patch.triangles()[t]) mean += length[v] / 3;
+    if (mean > 0) count += 0.5 * patch.area_normal(t).norm() / (mean * mean);
+  }
+  return patch.vertex_count() + static_cast<std::size_t>(std::min(swelling * count, 1e9)) + least_limit;
+}
+
 class Finisher {
  public:
   Finisher(const PatchMesh& rough, const FinishingOptions& options, const FinishingContext& context)
@@ -103,6 +119,7 @@ FinishedPatch Finisher::freely(const std::optional<SurfaceEnergy>& energy, const
   RemeshOptions remeshing;
   remeshing.forbidden = context_.rim.forbidden;
   remeshing.rounds = rounds_between;
+  remeshing.max_vertices = most_vertices(patch, target);
   if (energy) fair(patch, context_.rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
   if (options_.remesh) remesh(patch, target, remeshing, progress);
   for (int i = 0; energy && i < solves; ++i) {
@@ -148,19 +165,20 @@ FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, co
                      const Progress& progress) {
   Finisher finisher(rough, options, context);
   if (options.remesh || options.fairing) {
-    try {
-      FinishedPatch free = finisher.freely(options.fairing, progress);
-      if (free.defect.empty()) return free;
-      // A membrane stays close to the faces of the volumes, which meet nothing.
-      if (options.fairing && *options.fairing != SurfaceEnergy::membrane) {
-        FinishedPatch membrane = finisher.freely(SurfaceEnergy::membrane, progress);
-        membrane.route += std::string(" instead of ") + name(*options.fairing);
-        if (membrane.defect.empty()) return membrane;
+    // A membrane stays close to the faces of the volumes, which meet nothing.
+    std::vector<std::optional<SurfaceEnergy>> energies = {options.fairing};
+    if (options.fairing && *options.fairing != SurfaceEnergy::membrane)
+      energies.push_back(SurfaceEnergy::membrane);
+    for (const std::optional<SurfaceEnergy>& energy : energies) {
+      try {
+        FinishedPatch free = finisher.freely(energy, progress);
+        if (energy != options.fairing) free.route += std::string(" instead of ") + name(*options.fairing);
+        if (free.defect.empty()) return free;
+      } catch (const Cancelled&) {
+        throw;
+      } catch (const CompletionError&) {
+        // The equations had no solution, or the patch grew too large: guarded steps need neither.
       }
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const CompletionError&) {
-      // The equations had no solution, or the patch grew too large: guarded steps need neither.
     }
     FinishedPatch guarded = finisher.guarded(progress);
     if (guarded.defect.empty()) return guarded;
