@@ -25,7 +25,7 @@ constexpr double margin = 0.05;
 // meshes that are degenerate themselves.
 constexpr int most_restarts = 20;
 
-// Cubes of fewer steps of what can be stored make faces that cannot: another position is tried then, so often,
+// Cubes of fewer steps of what can be stored make faces that cannot: so often another position is tried then,
 // unless the mesh itself has vertices that close.
 constexpr int most_fine_restarts = 1;
 constexpr double least_steps = 8;
