@@ -22,7 +22,7 @@ struct MeshStatistics {
   std::size_t boundary_edges = 0;
   std::vector<std::size_t> boundary_loops;  ///< edges per loop, descending; loops follow the fans of faces,
                                             ///< so one that touches itself at a vertex is one loop
-  std::size_t non_manifold_edges = 0;  ///< with three or more faces
+  std::size_t non_manifold_edges = 0;       ///< with three or more faces
   std::size_t non_manifold_vertices =
       0;                               ///< with more than one fan of faces (faces at one edge are in one fan)
   std::size_t inconsistent_edges = 0;  ///< two faces that walk the edge the same way
