@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -16,6 +15,7 @@
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
+#include "common/core/stage_clock.h"
 #include "filter_atomicvolumes/bubbles.h"
 #include "filter_atomicvolumes/divisible_mesh.h"
 #include "filter_atomicvolumes/hole_targets.h"
@@ -61,21 +61,6 @@ double area(const LabelledSurface& surface) {
   }
   return 0.5 * twice;
 }
-
-// Wall seconds between the ends of stages.
-class StageClock {
- public:
-  explicit StageClock(CompletionReport& report) : report_(report) {}
-  void end_of(const char* stage) {
-    const auto now = std::chrono::steady_clock::now();
-    report_.stage_seconds.emplace_back(stage, std::chrono::duration<double>(now - start_).count());
-    start_ = now;
-  }
-
- private:
-  CompletionReport& report_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 class Run {
  public:

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <mutex>
@@ -14,6 +13,7 @@
 #include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
+#include "common/core/stage_clock.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_curveunfold/hole_filler.h"
 
@@ -37,21 +37,6 @@ void check_options(const CurveUnfoldingOptions& options) {
   if (!(std::isfinite(u.start_temperature) && u.start_temperature > 0))
     throw CompletionError(stage, "The start temperature must be positive.");
 }
-
-// Wall seconds between the ends of stages.
-class StageClock {
- public:
-  explicit StageClock(CompletionReport& report) : report_(report) {}
-  void end_of(const char* stage) {
-    const auto now = std::chrono::steady_clock::now();
-    report_.stage_seconds.emplace_back(stage, std::chrono::duration<double>(now - start_).count());
-    start_ = now;
-  }
-
- private:
-  CompletionReport& report_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // All holes of one run, each filled on its own and then made to fit with the others.
 class Run {
