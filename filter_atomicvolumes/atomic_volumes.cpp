@@ -95,6 +95,7 @@ class Run {
   std::string obstacle(const std::vector<std::size_t>& loops) const;
   std::vector<char> left_open() const;
   std::size_t replace(std::vector<PatchPiece> fresh, const std::vector<char>& open);
+  bool close_with_triangles(const Progress& progress);
   bool try_others(const PreparedConstraints& constraints, const PieceFinisher& finisher,
                   const Progress& progress);
 
@@ -311,6 +312,44 @@ bool Run::try_others(const PreparedConstraints& constraints, const PieceFinisher
   return tries > 0;
 }
 
+// A rim of three edges has but one patch without new vertices. Where the volumes gave none it is tried.
+// Whether any was taken.
+bool Run::close_with_triangles(const Progress& progress) {
+  const std::vector<std::vector<std::size_t>> groups = group_by_loops(pieces_);
+  std::vector<char> closed(loops_.size(), 0), shared(loops_.size(), 0), gone(pieces_.size(), 0);
+  std::vector<std::size_t> own(loops_.size(), pieces_.size());  // the piece that closes this loop only
+  for (const std::vector<std::size_t>& group : groups) {
+    const std::vector<std::size_t> loops = loops_of(pieces_, group);
+    for (std::size_t loop : loops) {
+      shared[loop] = loops.size() > 1 || group.size() > 1;
+      own[loop] = group.front();
+      closed[loop] = pieces_[group.front()].wanted && pieces_[group.front()].defect.empty();
+    }
+  }
+  std::vector<PatchPiece> triangles;
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    HoleReport& hole = report_.holes[i];
+    const bool left = is_targeted(hole) || hole.reason == describe(Sheet::Flaw::open);
+    if (loops_[i].vertices.size() != 3 || !left || closed[i] || shared[i]) continue;
+    PatchPiece piece;
+    piece.loops = {i};
+    piece.wanted = true;
+    piece.route = "one triangle";
+    piece.patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
+    piece.patch.triangles = {{loops_[i].vertices[0], loops_[i].vertices[1], loops_[i].vertices[2]}};
+    if (!check_patch(input_, piece.patch, {&loops_[i]}, progress).passed()) continue;
+    hole.reason.clear();
+    if (own[i] < pieces_.size()) gone[own[i]] = 1;
+    triangles.push_back(std::move(piece));
+  }
+  std::vector<PatchPiece> kept;
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    if (!gone[i]) kept.push_back(std::move(pieces_[i]));
+  pieces_ = std::move(kept);
+  std::move(triangles.begin(), triangles.end(), std::back_inserter(pieces_));
+  return !triangles.empty();
+}
+
 AtomicVolumesFigures Run::close(const Progress& progress) {
   StageClock clock(report_);
   divisible_ = make_divisible(mesh_, topology_, input_, progress);
@@ -336,6 +375,8 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
   clock.end_of("comparing the patches");
   if (try_others(constraints, finisher, progress.part(0.85, 1, "trying another octree")))
     clock.end_of("trying other octrees");
+  if (close_with_triangles(progress))
+    finisher.separate(pieces_, progress.part(1, 1, "comparing the patches"));
   return figures;
 }
 
