@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <numeric>
@@ -257,6 +258,34 @@ TEST(Constructions, SheetsOnEachOtherFarFromTheRim) {
   const AtomicVolumesResult result = fill_by_atomic_volumes(mesh, {}, options);
   EXPECT_EQ(result.completion.report.count(HoleOutcome::closed), 1u);
   EXPECT_LT(result.figures.leaves, 10000u);
+}
+
+// Two faces with an edge on the rim go through each other: no division of space tells their sides apart, but
+// the one triangle that the rim has is clean.
+TEST(Constructions, ARimOfThreeEdgesInAFoldGetsItsTriangle) {
+  TriangleMesh mesh = test::icosphere(2);
+  const auto [a, b, c] = mesh.triangles.back();
+  mesh.triangles.pop_back();
+  const auto beyond = [&](Index from, Index to) {
+    for (const Triangle& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k)
+        if (t[k] == to && t[(k + 1) % 3] == from) return t[(k + 2) % 3];
+    return Index{0};
+  };
+  const Index p = beyond(a, b), r = beyond(c, a);
+  mesh.vertices[p] = 0.5 * (mesh.vertices[c] + mesh.vertices[r]) * 1.02;
+  const auto corners = [&](Index i, Index j, Index k) {
+    return std::array<Vector3, 3>{mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]};
+  };
+  ASSERT_TRUE(meet_improperly(corners(b, a, p), corners(a, c, r)));
+  const AtomicVolumesResult result = fill_by_atomic_volumes(mesh, {}, {});
+  ASSERT_EQ(result.completion.report.holes.size(), 1u);
+  const HoleReport& hole = result.completion.report.holes.front();
+  EXPECT_EQ(hole.outcome, HoleOutcome::closed) << hole.reason;
+  EXPECT_EQ(hole.route, "one triangle");
+  ASSERT_EQ(result.completion.patch.triangles.size(), 1u);
+  const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
+  EXPECT_TRUE(check_patch(InputNeighbourhood(mesh), result.completion.patch, test::pointers(loops)).passed());
 }
 
 }  // namespace
