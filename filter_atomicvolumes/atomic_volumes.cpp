@@ -94,6 +94,7 @@ class Run {
   void take_pieces(std::vector<PatchPiece> pieces);
   std::string obstacle(const std::vector<std::size_t>& loops) const;
   std::vector<char> left_open() const;
+  std::size_t exchange(const std::vector<char>& gone, std::vector<PatchPiece> others);
   std::size_t replace(std::vector<PatchPiece> fresh, const std::vector<char>& open);
   bool close_with_triangles(const Progress& progress);
   bool try_others(const PreparedConstraints& constraints, const PieceFinisher& finisher,
@@ -116,11 +117,8 @@ void Run::refuse_sewn_loops() {
   if (!divisible_ || !divisible_->merged) return;
   for (std::size_t i = 0; i < loops_.size(); ++i)
     for (std::size_t k = 0; k < loops_[i].faces.size() && is_targeted(report_.holes[i]); ++k) {
-      const Index face = loops_[i].faces[k], next = loops_[i].vertices[(k + 1) % loops_[i].vertices.size()];
-      const Triangle& t = mesh_.triangles[face];
-      const Index corner = static_cast<Index>(std::find(t.begin(), t.end(), next) - t.begin());
-      const Index opposite = divisible_->topology.opposite[3 * face + corner];
-      if (opposite != MeshTopology::boundary)
+      const Index h = half_edge_at(mesh_, loops_[i], k);
+      if (divisible_->topology.opposite[h] != MeshTopology::boundary)
         report_.holes[i].reason = "edges of this rim lie on each other; apply 'Merge Close Vertices' first";
     }
 }
@@ -164,15 +162,13 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
   SolutionPoll poll;
   // Large octrees one after the other, for the memory's sake: most of the work on each is in threads already.
   const std::size_t grain = topology_.boundary_half_edges.size() > most_edges_at_once ? shifts : 1;
-  for_ranges(shifts, grain, progress, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t shift = begin; shift < end; ++shift) {
-      const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
-      VolumeSolution one =
-          solve(static_cast<int>(shift), options_, constraints, progress.part(from, to, "dividing space"));
-      SolutionVote vote = shifts > 1 ? this->vote(shift, one) : SolutionVote();
-      const std::lock_guard<std::mutex> lock(mutex);
-      poll.hear(std::move(vote), std::move(one));
-    }
+  for_each(shifts, grain, progress, [&](std::size_t shift) {
+    const double from = static_cast<double>(shift) / options_.shifts, to = (shift + 1.0) / options_.shifts;
+    VolumeSolution one =
+        solve(static_cast<int>(shift), options_, constraints, progress.part(from, to, "dividing space"));
+    SolutionVote vote = shifts > 1 ? this->vote(shift, one) : SolutionVote();
+    const std::lock_guard<std::mutex> lock(mutex);
+    poll.hear(std::move(vote), std::move(one));
   });
   std::optional<VolumeSolution> best = poll.take();
   if (!best)
@@ -239,6 +235,17 @@ std::vector<char> Run::left_open() const {
   return open;
 }
 
+// Takes out the pieces that are marked and adds others. Returns the number of the first of these.
+std::size_t Run::exchange(const std::vector<char>& gone, std::vector<PatchPiece> others) {
+  std::vector<PatchPiece> all;
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    if (!gone[i]) all.push_back(std::move(pieces_[i]));
+  const std::size_t first = all.size();
+  std::move(others.begin(), others.end(), std::back_inserter(all));
+  pieces_ = std::move(all);
+  return first;
+}
+
 // Puts those of the fresh pieces that close open loops only in the place of the pieces there. Returns the
 // number of the first of them: they are the last ones then.
 std::size_t Run::replace(std::vector<PatchPiece> fresh, const std::vector<char>& open) {
@@ -271,12 +278,7 @@ std::size_t Run::replace(std::vector<PatchPiece> fresh, const std::vector<char>&
     for (std::size_t loop : loops)
       if (!taken[loop] && is_targeted(report_.holes[loop])) report_.holes[loop].reason = defect;
   }
-  std::vector<PatchPiece> kept;
-  for (std::size_t i = 0; i < pieces_.size(); ++i)
-    if (!gone[i]) kept.push_back(std::move(pieces_[i]));
-  pieces_ = std::move(kept);
-  const std::size_t first = pieces_.size();
-  std::move(usable.begin(), usable.end(), std::back_inserter(pieces_));
+  const std::size_t first = exchange(gone, std::move(usable));
   for (std::size_t loop = 0; loop < loops_.size(); ++loop)
     if (taken[loop] && open[loop]) report_.holes[loop].reason.clear();
   return first;
@@ -315,10 +317,9 @@ bool Run::try_others(const PreparedConstraints& constraints, const PieceFinisher
 // A rim of three edges has but one patch without new vertices. Where the volumes gave none it is tried.
 // Whether any was taken.
 bool Run::close_with_triangles(const Progress& progress) {
-  const std::vector<std::vector<std::size_t>> groups = group_by_loops(pieces_);
   std::vector<char> closed(loops_.size(), 0), shared(loops_.size(), 0), gone(pieces_.size(), 0);
   std::vector<std::size_t> own(loops_.size(), pieces_.size());  // the piece that closes this loop only
-  for (const std::vector<std::size_t>& group : groups) {
+  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
     const std::vector<std::size_t> loops = loops_of(pieces_, group);
     for (std::size_t loop : loops) {
       shared[loop] = loops.size() > 1 || group.size() > 1;
@@ -342,12 +343,9 @@ bool Run::close_with_triangles(const Progress& progress) {
     if (own[i] < pieces_.size()) gone[own[i]] = 1;
     triangles.push_back(std::move(piece));
   }
-  std::vector<PatchPiece> kept;
-  for (std::size_t i = 0; i < pieces_.size(); ++i)
-    if (!gone[i]) kept.push_back(std::move(pieces_[i]));
-  pieces_ = std::move(kept);
-  std::move(triangles.begin(), triangles.end(), std::back_inserter(pieces_));
-  return !triangles.empty();
+  const bool any = !triangles.empty();
+  exchange(gone, std::move(triangles));
+  return any;
 }
 
 AtomicVolumesFigures Run::close(const Progress& progress) {

@@ -1,15 +1,12 @@
 #include "filter_atomicvolumes/decomposition.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "common/core/error.h"
 #include "filter_atomicvolumes/crossed_cube.h"
+#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {
@@ -184,19 +181,10 @@ void Decomposer::run(std::vector<Pending> level, const Progress& progress) {
   double done = 0;
   while (!level.empty()) {
     std::vector<Verdict> verdicts(level.size());
-    std::mutex mutex;
-    std::exception_ptr error;
-    tbb::parallel_for(std::size_t(0), level.size(), [&](std::size_t i) {
-      try {
-        progress.check();
-        verdicts[i] = judge(level[i]);
-        if (verdicts[i].split) verdicts[i].near = near(level[i]);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!error) error = std::current_exception();
-      }
+    for_each(level.size(), 1, progress, [&](std::size_t i) {
+      verdicts[i] = judge(level[i]);
+      if (verdicts[i].split) verdicts[i].near = near(level[i]);
     });
-    if (error) std::rethrow_exception(error);
     std::vector<Pending> next;
     for (std::size_t i = 0; i < level.size(); ++i) {
       const Index cube = level[i].cube;

@@ -56,13 +56,7 @@ std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Pro
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (!is_targeted(holes[i])) continue;
     rims.resize(3 * mesh.triangles.size(), 0);
-    const std::vector<Index>& vertices = loops[i].vertices;
-    for (std::size_t k = 0; k < vertices.size(); ++k) {
-      // The loop runs against the face.
-      const Index t = loops[i].faces[k], origin = vertices[(k + 1) % vertices.size()];
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-        if (mesh.triangles[t][h % 3] == origin) rims[h] = 1;
-    }
+    for (std::size_t k = 0; k < loops[i].faces.size(); ++k) rims[half_edge_at(mesh, loops[i], k)] = 1;
   }
   return rims;
 }

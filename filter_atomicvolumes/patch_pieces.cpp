@@ -16,12 +16,7 @@ void sort_out(std::vector<std::size_t>& numbers) {
 
 LoopNumbers::LoopNumbers(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops) {
   for (std::size_t i = 0; i < loops.size(); ++i)
-    for (std::size_t k = 0; k < loops[i].faces.size(); ++k) {
-      // The face walks the edge against the patch.
-      const Index face = loops[i].faces[k], origin = loops[i].vertices[(k + 1) % loops[i].vertices.size()];
-      for (Index corner = 0; corner < 3; ++corner)
-        if (mesh.triangles[face][corner] == origin) loop_.emplace(3 * face + corner, i);
-    }
+    for (std::size_t k = 0; k < loops[i].faces.size(); ++k) loop_.emplace(half_edge_at(mesh, loops[i], k), i);
 }
 
 std::optional<std::size_t> LoopNumbers::of(Index half_edge) const {

@@ -65,14 +65,13 @@ void PieceFinisher::finish(std::vector<PatchPiece>& pieces, std::size_t first,
   double total = 0;
   for (std::size_t i = first; i < pieces.size(); ++i)
     total += pieces[i].wanted ? static_cast<double>(pieces[i].sheet.triangles.size()) : 0;
-  for_ranges(pieces.size() - first, 1, progress, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = first + begin; i < first + end; ++i) {
-      if (!pieces[i].wanted) continue;
-      prepare(pieces[i], progress.part(0, 0, "fairing the patches"));
-      finish_one(pieces[i], options_, obstacles_of(pieces, i, first),
-                 progress.part(0, 0, "fairing the patches"));
-      progress.advance(static_cast<double>(pieces[i].sheet.triangles.size()) / total);
-    }
+  const Progress within = progress.part(0, 0, "fairing the patches");
+  for_each(pieces.size() - first, 1, progress, [&](std::size_t number) {
+    PatchPiece& piece = pieces[first + number];
+    if (!piece.wanted) return;
+    prepare(piece, within);
+    finish_one(piece, options_, obstacles_of(pieces, first + number, first), within);
+    progress.advance(static_cast<double>(piece.sheet.triangles.size()) / total);
   });
 }
 

@@ -1,8 +1,8 @@
 #include "filter_atomicvolumes/rim_patch.h"
 
 #include <algorithm>
-#include <limits>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "filter_atomicvolumes/patch_rounding.h"
@@ -64,21 +64,42 @@ std::unordered_map<std::uint64_t, Index> faces_at_boundary(const TriangleMesh& m
 
 // The length below which edges may turn over when their ends are rounded to what will be stored.
 double least_stored_length(const Vector3& a, const Vector3& b) {
-  const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-  return least_stored_edge * most * std::numeric_limits<float>::epsilon();
+  return least_stored_edge * std::max(stored_resolution(a), stored_resolution(b));
 }
+
+// Which boundary edge of the mesh each Steiner point of a patch lies on. Edges are known by the place in the
+// rim where they begin.
+class RimEdges {
+ public:
+  RimEdges(const PatchMesh& mesh, const Rim& rim)
+      : mesh_(mesh), rim_(rim), edge_of_(mesh.vertex_count(), none) {
+    for (Index place = 0; place < mesh.rim_size(); ++place)
+      for (Index v = mesh.target(mesh.leaving_along_boundary(place)); !mesh.on_rim(v);
+           v = mesh.target(mesh.leaving_along_boundary(v))) {
+        edge_of_[v] = place;
+        steiner_points_.push_back(v);
+      }
+  }
+
+  const std::vector<Index>& steiner_points() const { return steiner_points_; }  // edge by edge, along the rim
+  // Of a vertex at the boundary; of one on the rim the edge that begins there.
+  Index edge_of(Index vertex) const { return mesh_.on_rim(vertex) ? vertex : edge_of_[vertex]; }
+  bool on_edge(Index vertex, Index edge) const {
+    return edge_of(vertex) == edge || (mesh_.on_rim(vertex) && vertex == rim_.next[edge]);
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  const Rim& rim_;
+  std::vector<Index> edge_of_;  // of Steiner points
+  std::vector<Index> steiner_points_;
+};
 
 // Pockets: what an edge between two points of one boundary edge cuts off the patch, on the side of that edge.
 // It lies over a stretch of a straight line, so that the patch does without it.
 class PocketRemover {
  public:
-  PocketRemover(PatchMesh& mesh, const Rim& rim)
-      : mesh_(mesh), rim_(rim), edge_of_(mesh.vertex_count(), none) {
-    for (Index place = 0; place < mesh.rim_size(); ++place)
-      for (Index v = mesh.target(mesh.leaving_along_boundary(place)); !mesh.on_rim(v);
-           v = mesh.target(mesh.leaving_along_boundary(v)))
-        edge_of_[v] = place;
-  }
+  PocketRemover(PatchMesh& mesh, const Rim& rim) : mesh_(mesh), edges_(mesh, rim) {}
 
   // Returns whether there were any.
   bool run() {
@@ -96,15 +117,12 @@ class PocketRemover {
   }
 
  private:
-  bool on_edge(Index v, Index edge) const {
-    return mesh_.on_rim(v) ? v == edge || v == rim_.next[edge] : edge_of_[v] == edge;
-  }
   // Takes out what the half-edge cuts off if it goes from a point of a boundary edge to an earlier one.
   bool cut_off(Index h, std::vector<char>& gone) const {
     const Index from = mesh_.target(h), to = mesh_.origin(h);
     if (!mesh_.at_boundary(from) || !mesh_.at_boundary(to)) return false;
-    const Index edge = mesh_.on_rim(from) ? from : edge_of_[from];
-    if (!on_edge(to, edge) || to == edge) return false;
+    const Index edge = edges_.edge_of(from);
+    if (!edges_.on_edge(to, edge) || to == edge) return false;
     std::size_t path = 0;
     for (Index v = from; v != to; ++path) {
       if (v != from && mesh_.on_rim(v)) return false;
@@ -112,16 +130,15 @@ class PocketRemover {
     }
     // The half-edge closes the path to a loop round the pocket.
     std::vector<Index> pocket = {h / 3};
-    std::vector<char> seen(mesh_.triangle_count(), 0);
-    seen[h / 3] = 1;
+    std::unordered_set<Index> seen = {h / 3};
     std::size_t boundary = 0;
-    for (std::size_t i = 0; i < pocket.size(); ++i)
+    for (std::size_t i = 0; i < pocket.size() && boundary <= path; ++i)
       for (Index side = 3 * pocket[i]; side < 3 * pocket[i] + 3; ++side) {
         const Index other = mesh_.opposite(side);
-        if (other == none) ++boundary;
-        if (other == none || side == h || seen[other / 3]) continue;
-        seen[other / 3] = 1;
-        pocket.push_back(other / 3);
+        if (other == none)
+          ++boundary;
+        else if (side != h && seen.insert(other / 3).second)
+          pocket.push_back(other / 3);
       }
     if (boundary != path) return false;
     for (Index t : pocket) gone[t] = 1;
@@ -129,8 +146,7 @@ class PocketRemover {
   }
 
   PatchMesh& mesh_;
-  const Rim& rim_;
-  std::vector<Index> edge_of_;  // the place in the rim where the boundary edge of a Steiner point begins
+  const RimEdges edges_;
 };
 
 // Collapses the edges that are too short to be stored, as far as the patch stays a manifold: towards the rim,
@@ -167,21 +183,19 @@ class SteinerRemover {
  public:
   SteinerRemover(RimPatch& patch, const InputNeighbourhood& input,
                  const std::vector<std::array<Vector3, 3>>& obstacles)
-      : patch_(patch),
-        mesh_(patch.mesh),
+      : mesh_(patch.mesh),
         obstacles_(obstacles),
-        guarded_(patch.mesh, input, patch.rim.forbidden, obstacles) {
-    find_edges();
+        guarded_(patch.mesh, input, patch.rim.forbidden, obstacles),
+        edges_(patch.mesh, patch.rim),
+        steiner_(edges_.steiner_points()),
+        previous_(patch.mesh.rim_size()) {
+    for (Index steiner : steiner_) guarded_.rest(steiner, patch.rim_faces[edges_.edge_of(steiner)]);
+    for (Index place = 0; place < mesh_.rim_size(); ++place) previous_[patch.rim.next[place]] = place;
   }
 
   std::size_t run(const Progress& progress);
 
  private:
-  void find_edges();
-  bool on_edge(Index vertex, Index edge) const {
-    return mesh_.on_rim(vertex) ? vertex == edge || vertex == patch_.rim.next[edge]
-                                : edge_of_[vertex] == edge;
-  }
   bool makes_chord(Index gone, Index kept) const;
   bool collapse(Index steiner);
   bool flip_one(Index steiner);
@@ -190,28 +204,13 @@ class SteinerRemover {
   bool lift(Index steiner);
   bool force(Index steiner);
 
-  RimPatch& patch_;
   PatchMesh& mesh_;
   const std::vector<std::array<Vector3, 3>>& obstacles_;
   GuardedPatch guarded_;
-  std::vector<Index> steiner_;
-  std::vector<Index> edge_of_;   // of each Steiner point: the place in the rim where its boundary edge begins
+  const RimEdges edges_;
+  std::vector<Index> steiner_;   // that are left
   std::vector<Index> previous_;  // along the rim
 };
-
-void SteinerRemover::find_edges() {
-  edge_of_.assign(mesh_.vertex_count(), none);
-  previous_.resize(mesh_.rim_size());
-  for (Index place = 0; place < mesh_.rim_size(); ++place) {
-    previous_[patch_.rim.next[place]] = place;
-    for (Index v = mesh_.target(mesh_.leaving_along_boundary(place)); !mesh_.on_rim(v);
-         v = mesh_.target(mesh_.leaving_along_boundary(v))) {
-      edge_of_[v] = place;
-      steiner_.push_back(v);
-      guarded_.rest(v, patch_.rim_faces[place]);
-    }
-  }
-}
 
 // Whether an edge would join two points of one boundary edge of the mesh without being part of it. The
 // point's two neighbours along the boundary go on being such.
@@ -221,9 +220,9 @@ bool SteinerRemover::makes_chord(Index gone, Index kept) const {
     const Index v = mesh_.target(out);
     if (v == kept || mesh_.is_boundary(out) || !mesh_.at_boundary(v)) return;
     if (mesh_.on_rim(kept))
-      chord |= on_edge(v, kept) || on_edge(v, previous_[kept]);
+      chord |= edges_.on_edge(v, kept) || edges_.on_edge(v, previous_[kept]);
     else
-      chord |= on_edge(v, edge_of_[kept]);
+      chord |= edges_.on_edge(v, edges_.edge_of(kept));
   });
   return chord;
 }
@@ -250,10 +249,11 @@ bool SteinerRemover::flip_one(Index steiner) {
   if (edges.size() < 2) return false;
   for (Index h : edges) {
     const Index c = mesh_.apex(h), d = mesh_.apex(mesh_.opposite(h));
-    const auto edge = [&](Index v) { return mesh_.on_rim(v) ? v : edge_of_[v]; };
     if (mesh_.at_boundary(c) && mesh_.at_boundary(d)) {
-      const Index e = edge(c), f = edge(d);
-      if (on_edge(c, f) || on_edge(d, e) || (mesh_.on_rim(c) && on_edge(d, previous_[c]))) continue;
+      const Index e = edges_.edge_of(c), f = edges_.edge_of(d);
+      if (edges_.on_edge(c, f) || edges_.on_edge(d, e) ||
+          (mesh_.on_rim(c) && edges_.on_edge(d, previous_[c])))
+        continue;
     }
     if (guarded_.flip(h)) return true;
   }
@@ -319,10 +319,7 @@ bool SteinerRemover::lift(Index steiner) {
   });
   for (double part = 0.5; part > smallest_lift; part *= 0.25)
     for (const Vector3& way : ways)
-      if (guarded_.fill_at_boundary(steiner, here + part * way)) {
-        edge_of_[steiner] = none;
-        return true;
-      }
+      if (guarded_.fill_at_boundary(steiner, here + part * way)) return true;
   return false;
 }
 
@@ -344,14 +341,14 @@ bool SteinerRemover::force(Index steiner) {
   const Vector3 middle = (mesh_.position(t[0]) + mesh_.position(t[1]) + mesh_.position(t[2])) / 3;
   mesh_.move(steiner, as_stored(0.5 * (mesh_.position(steiner) + middle)));
   mesh_.fill_at_boundary(steiner);
-  edge_of_[steiner] = none;
   return true;
 }
 
 std::size_t SteinerRemover::run(const Progress& progress) {
   std::vector<Index> unrounded;
   for (Index v = static_cast<Index>(mesh_.rim_size()); v < mesh_.vertex_count(); ++v)
-    if (edge_of_[v] == none && mesh_.vertex_alive(v) && as_stored(mesh_.position(v)) != mesh_.position(v))
+    if (edges_.edge_of(v) == none && mesh_.vertex_alive(v) &&
+        as_stored(mesh_.position(v)) != mesh_.position(v))
       unrounded.push_back(v);
   round_vertices(mesh_, guarded_, unrounded, progress);
   for (int pass = 0; pass < most_passes && !steiner_.empty(); ++pass) {

@@ -73,7 +73,6 @@ class Splitter {
   // The surface taken apart.
   std::vector<SheetVertex> vertices_;
   std::vector<Triangle> triangles_;
-  std::vector<LabelledSurface::Between> volumes_;
   std::vector<Index> origin_;  // of each vertex, in the surface; `none` for middles
   std::vector<char> doubled_;
   std::vector<char> joined_;  // vertices that would have to be two of the input's at once
@@ -184,7 +183,6 @@ void Splitter::number_fans() {
   std::vector<Index> number(parent_.size(), none);
   std::vector<char> seen(surface_.vertices.size(), 0);
   triangles_.resize(surface_.triangles.size());
-  volumes_ = surface_.volumes;
   for (Index corner = 0; corner < parent_.size(); ++corner) {
     const Index fan = root(corner), v = vertex(corner);
     if (number[fan] == none) {
@@ -264,7 +262,6 @@ void Splitter::divide(Index triangle, const Index* middle) {
   triangles_[triangle] = {outline[0], outline[1], outline[2]};
   for (std::size_t i = 2; i + 1 < outline.size(); ++i) {
     triangles_.push_back({outline[0], outline[i], outline[i + 1]});
-    volumes_.push_back(LabelledSurface::Between(volumes_[triangle]));
   }
 }
 
@@ -306,7 +303,6 @@ std::vector<Sheet> Splitter::pieces() const {
       t[k] = number;
     }
     sheet.triangles.push_back(t);
-    sheet.volumes.push_back(volumes_[i]);
   }
   for (Index h = 0; h < partner_.size(); ++h) {
     if (partner_[h] != none) continue;

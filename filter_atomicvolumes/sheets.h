@@ -22,7 +22,6 @@ struct SheetVertex {
 struct Sheet {
   std::vector<SheetVertex> vertices;  ///< a boundary vertex that the piece visits twice is there twice
   std::vector<Triangle> triangles;
-  std::vector<LabelledSurface::Between> volumes;  ///< of each triangle
   /// Boundary half-edges of the mesh that it closes, ascending. Empty for a piece without a rim.
   std::vector<Index> closes;
   /// What keeps it from closing its rims.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/patch.h"
 #include "filter_atomicvolumes/volume_locator.h"
 #include "filter_atomicvolumes/volume_smoothing.h"
 
@@ -76,8 +77,8 @@ double smallest_leaf(const VolumeSolution& solution) {
 double least_leaf(const TriangleMesh& mesh) {
   double most = 0;
   for (const Vector3& p : mesh.vertices)
-    if (p.allFinite()) most = std::max(most, p.cwiseAbs().maxCoeff());
-  return least_steps * most * std::numeric_limits<float>::epsilon();
+    if (p.allFinite()) most = std::max(most, stored_resolution(p));
+  return least_steps * most;
 }
 
 void count_leaves(const VolumeSolution& solution, AtomicVolumesFigures& figures) {
@@ -97,8 +98,7 @@ void count_leaves(const VolumeSolution& solution, AtomicVolumesFigures& figures)
         ++figures.hole_leaves;
     }
   }
-  figures.smallest_leaf =
-      solution.mesh.lattice.side() / static_cast<double>(std::int64_t{1} << figures.depth);
+  figures.smallest_leaf = smallest_leaf(solution);
   figures.nodes = solution.complex.nodes;
   figures.tetrahedra = solution.complex.tetrahedra;
   figures.cut_weight = solution.labelling.weight;
@@ -113,15 +113,15 @@ void check_budget(const VolumeComplex& complex, const AtomicVolumesOptions& opti
 }
 
 // Splits cubes until those that only the mesh divides agree with each other, and constraints are told apart;
-// then labels the volumes. Cubes smaller than `least` count as a coincidence.
+// then labels the volumes. `distance` is the shortest between rim vertices; cubes smaller than `least` count
+// as a coincidence.
 void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
-           const PreparedConstraints& constraints, double least, const Progress& progress) {
+           const PreparedConstraints& constraints, double distance, double least, const Progress& progress) {
   DecompositionOptions division;
   division.max_depth = options.max_depth.value_or(Lattice::depth);
   division.cube_budget = options.node_budget;
-  division.least_contradiction = static_cast<std::int64_t>(
-      closest_contradiction * shortest_distance(solution.mesh.mesh, solution.mesh.topology) /
-      solution.mesh.lattice.step());
+  division.least_contradiction =
+      static_cast<std::int64_t>(closest_contradiction * distance / solution.mesh.lattice.step());
   Decomposition& octree = solution.decomposition;
   octree = decompose(solution.mesh, division, progress.part(0, 0.3, stage));
   if (smallest_leaf(solution) < least) throw Coincidence();
@@ -134,13 +134,11 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
     if (!constraints.empty())
       tied = tie_constraints(solution.mesh, octree, solution.complex, options.weight, constraints, progress);
     if (i == most_refinements) break;
-    std::vector<Index> disagreeing = solution.complex.disagreeing;
-    disagreeing.erase(std::remove_if(disagreeing.begin(), disagreeing.end(),
-                                     [&](Index cube) {
-                                       return Octree::side(octree.octree[cube].depth) <=
-                                              division.least_contradiction;
-                                     }),
-                      disagreeing.end());
+    std::vector<Index>& disagreeing = solution.complex.disagreeing;
+    const auto too_small = [&](Index cube) {
+      return Octree::side(octree.octree[cube].depth) <= division.least_contradiction;
+    };
+    disagreeing.erase(std::remove_if(disagreeing.begin(), disagreeing.end(), too_small), disagreeing.end());
     bool split = split_further(octree, solution.mesh, division, disagreeing);
     if (!tied.split.empty())
       split |= refine_for_constraints(octree, solution.mesh, division, constraints, tied.split, progress);
@@ -181,7 +179,7 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
         {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}, {}};
     try {
       const bool may_be_fine = restart >= most_fine_restarts || closest_contradiction * distance < leaf;
-      solve(solution, options, constraints, may_be_fine ? 0 : leaf, progress);
+      solve(solution, options, constraints, distance, may_be_fine ? 0 : leaf, progress);
     } catch (const Coincidence&) {
       continue;
     }

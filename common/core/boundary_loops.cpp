@@ -279,6 +279,12 @@ std::string describe(LoopDefect defect) {
   return "";
 }
 
+Index half_edge_at(const TriangleMesh& mesh, const BoundaryLoop& loop, std::size_t edge) {
+  const Triangle& t = mesh.triangles[loop.faces[edge]];
+  const auto target = std::find(t.begin(), t.end(), loop.vertices[edge]) - t.begin();
+  return 3 * loop.faces[edge] + static_cast<Index>(target + 2) % 3;
+}
+
 double perimeter(const TriangleMesh& mesh, const BoundaryLoop& loop) {
   double sum = 0;
   for (std::size_t i = 0; i < loop.vertices.size(); ++i)

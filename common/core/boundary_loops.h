@@ -43,6 +43,9 @@ struct BoundaryLoop {
 std::vector<BoundaryLoop> trace_boundary_loops(const TriangleMesh& mesh, const MeshTopology& topology,
                                                const Progress& progress = Progress());
 
+/// The half-edge of the mesh at the loop's edge from `vertices[edge]` to the next; it runs against the loop.
+Index half_edge_at(const TriangleMesh& mesh, const BoundaryLoop& loop, std::size_t edge);
+
 /// Sum of the edge lengths of a loop.
 double perimeter(const TriangleMesh& mesh, const BoundaryLoop& loop);
 

@@ -39,10 +39,9 @@ struct Box {
 inline Box bounding_box(const Vector3& a, const Vector3& b, const Vector3& c) {
   Box box;
   for (int k = 0; k < 3; ++k) {
+    if (!std::isfinite(a[k]) || !std::isfinite(b[k]) || !std::isfinite(c[k])) return Box();
     box.low[k] = std::min({a[k], b[k], c[k]});
     box.high[k] = std::max({a[k], b[k], c[k]});
-    // A number that is none makes the difference none; so does an infinite one.
-    if (!std::isfinite((a[k] - b[k]) + (b[k] - c[k]))) return Box();
   }
   return box;
 }

@@ -1,10 +1,15 @@
 #include "common/core/patch.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace meshcomplete {
 
 Vector3 as_stored(const Vector3& position) { return position.cast<float>().cast<double>(); }
+
+double stored_resolution(const Vector3& position) {
+  return position.cwiseAbs().maxCoeff() * std::numeric_limits<float>::epsilon();
+}
 
 std::array<Vector3, 3> corners(const TriangleMesh& mesh, const Patch& patch, const Triangle& triangle) {
   const auto at = [&](Index v) {

@@ -25,6 +25,10 @@ struct Patch {
 /// Rounds to the nearest float, coordinate by coordinate: the value that MeshLab will store.
 Vector3 as_stored(const Vector3& position);
 
+/// The step between the numbers that MeshLab can store at the greatest coordinate of a position, or somewhat
+/// more.
+double stored_resolution(const Vector3& position);
+
 /// Positions of the corners of a triangle of `patch`, which belongs to `mesh`.
 std::array<Vector3, 3> corners(const TriangleMesh& mesh, const Patch& patch, const Triangle& triangle);
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/core/mesh_statistics.h"
+#include "common/core/patch.h"
 #include "common/core/patch_check.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_atomicvolumes/atomic_volumes.h"
@@ -286,6 +287,22 @@ TEST(Constructions, ARimOfThreeEdgesInAFoldGetsItsTriangle) {
   ASSERT_EQ(result.completion.patch.triangles.size(), 1u);
   const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
   EXPECT_TRUE(check_patch(InputNeighbourhood(mesh), result.completion.patch, test::pointers(loops)).passed());
+}
+
+// Far from the origin floats are coarse: cubes, and the edges of patches between them, come out finer than
+// what can be stored.
+TEST(Constructions, HolesFarFromTheOrigin) {
+  TriangleMesh mesh = test::sphere_with_holes(3);
+  for (Vector3& p : mesh.vertices) p = as_stored(p + Vector3(3000, -5000, 4000));
+  int moved = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    AtomicVolumesOptions options;
+    options.seed = seed;
+    options.shifts = 1;
+    EXPECT_EQ(complete(mesh, options).genera, Genera{0}) << "seed " << seed;
+    moved += fill_by_atomic_volumes(mesh, {}, options).figures.restarts;
+  }
+  EXPECT_GT(moved, 0) << "some octrees are too fine";
 }
 
 }  // namespace

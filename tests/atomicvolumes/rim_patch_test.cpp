@@ -105,7 +105,6 @@ TEST(RimPatch, EarsOnARimEdgeAreTakenOff) {
     if (tip.rim_edge == SheetVertex::none || sheet.vertices[to].rim_edge != tip.rim_edge) continue;
     tip.position = 0.5 * (tip.position + sheet.vertices[to].position);
     sheet.triangles.push_back({from, static_cast<Index>(sheet.vertices.size()), to});
-    sheet.volumes.push_back(sheet.volumes[0]);
     sheet.vertices.push_back(tip);
     ++added;
   }
