@@ -13,17 +13,17 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/hole_targets.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
+#include "common/core/patch_pieces.h"
+#include "common/core/piece_finishing.h"
+#include "common/core/sheets.h"
 #include "common/core/stage_clock.h"
+#include "common/core/threads.h"
 #include "filter_atomicvolumes/bubbles.h"
 #include "filter_atomicvolumes/divisible_mesh.h"
-#include "filter_atomicvolumes/hole_targets.h"
-#include "filter_atomicvolumes/patch_pieces.h"
-#include "filter_atomicvolumes/piece_finishing.h"
-#include "filter_atomicvolumes/sheets.h"
 #include "filter_atomicvolumes/solution_poll.h"
-#include "filter_atomicvolumes/threads.h"
 #include "filter_atomicvolumes/volume_solution.h"
 
 namespace meshcomplete {
@@ -130,7 +130,7 @@ VolumeSolution Run::solve(int shift, const AtomicVolumesOptions& options,
 }
 
 std::vector<Sheet> Run::sheets_of(const LabelledSurface& surface) const {
-  return split_into_sheets(divided_mesh(), divided_topology(), surface, mesh_);
+  return split_into_sheets(divided_mesh(), divided_topology(), separating(surface), mesh_);
 }
 
 std::vector<PatchPiece> Run::pieces_of(const LabelledSurface& surface) const {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/core/sheets.h"
 #include "filter_atomicvolumes/atomic_volumes.h"
-#include "filter_atomicvolumes/sheets.h"
 
 namespace meshcomplete {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/core/threads.h"
 #include "filter_atomicvolumes/constraints.h"
-#include "filter_atomicvolumes/threads.h"
 #include "filter_atomicvolumes/volume_locator.h"
 
 namespace meshcomplete {

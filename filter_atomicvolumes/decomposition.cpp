@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/threads.h"
 #include "filter_atomicvolumes/crossed_cube.h"
-#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {

@@ -64,4 +64,12 @@ LabelledSurface extract(const LatticeMesh& mesh, const Octree& octree, const Vol
   return Extractor(mesh, octree, complex, labelling).run();
 }
 
+SeparatingSurface separating(const LabelledSurface& surface) {
+  SeparatingSurface result;
+  result.triangles = surface.triangles;
+  for (const VolumeVertex& v : surface.vertices)
+    result.vertices.push_back({v.position, v.input, v.rim_edge, v.key.is_cut()});
+  return result;
+}
+
 }  // namespace meshcomplete

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "common/core/sheets.h"
 #include "filter_atomicvolumes/labelling.h"
 #include "filter_atomicvolumes/volume_complex.h"
 
@@ -24,5 +25,8 @@ struct LabelledSurface {
 /// than two faces where volumes touch. Cost: O(faces of the complex).
 LabelledSurface extract(const LatticeMesh& mesh, const Octree& octree, const VolumeComplex& complex,
                         const Labelling& labelling);
+
+/// The same without what the octree knows of it.
+SeparatingSurface separating(const LabelledSurface& surface);
 
 }  // namespace meshcomplete

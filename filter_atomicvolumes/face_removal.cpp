@@ -4,7 +4,7 @@
 
 #include "common/core/boundary_loops.h"
 #include "common/core/error.h"
-#include "filter_atomicvolumes/hole_targets.h"
+#include "common/core/hole_targets.h"
 #include "filter_atomicvolumes/offending_faces.h"
 #include "filter_atomicvolumes/volume_solution.h"
 

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "common/core/counted.h"
-#include "filter_atomicvolumes/threads.h"
+#include "common/core/threads.h"
 #include "filter_atomicvolumes/volume_locator.h"
 
 namespace meshcomplete {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "common/core/threads.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_atomicvolumes/rigid_cubes.h"
-#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {

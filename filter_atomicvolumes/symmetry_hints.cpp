@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "filter_atomicvolumes/threads.h"
+#include "common/core/threads.h"
 
 namespace meshcomplete {
 namespace {

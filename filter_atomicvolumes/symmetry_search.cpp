@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/threads.h"
 #include "filter_atomicvolumes/symmetry_starts.h"
-#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {

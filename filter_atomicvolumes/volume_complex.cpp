@@ -6,11 +6,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "common/core/threads.h"
 #include "filter_atomicvolumes/cell_cubes.h"
 #include "filter_atomicvolumes/cell_faces.h"
 #include "filter_atomicvolumes/crossed_cube.h"
 #include "filter_atomicvolumes/hole_cube.h"
-#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {

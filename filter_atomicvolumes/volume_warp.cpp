@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/core/patch.h"
-#include "filter_atomicvolumes/threads.h"
+#include "common/core/threads.h"
 
 namespace meshcomplete {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/rim_patch.h"
+#include "common/core/sheets.h"
 #include "filter_atomicvolumes/extraction.h"
-#include "filter_atomicvolumes/rim_patch.h"
-#include "filter_atomicvolumes/sheets.h"
 #include "tests/support/complexes.h"
 #include "tests/support/volumes.h"
 
@@ -203,7 +203,8 @@ TEST(ConvexCells, PatchesAreClean) {
           extract(placed.lattice_mesh, division->decomposition.octree, division->complex,
                   cut_complex(placed.lattice_mesh, division->complex, CutWeight::area, {}));
       std::size_t closed = 0;
-      for (const Sheet& sheet : split_into_sheets(placed.mesh, placed.topology, surface, placed.mesh)) {
+      for (const Sheet& sheet :
+           split_into_sheets(placed.mesh, placed.topology, separating(surface), placed.mesh)) {
         ASSERT_EQ(sheet.flaw, Sheet::Flaw::none) << named.name << ", depth " << depth;
         if (sheet.closes.empty()) continue;
         closed += sheet.closes.size();

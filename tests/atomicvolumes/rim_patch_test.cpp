@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/rim_patch.h"
+#include "common/core/rim_patch.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,8 @@ std::vector<Sheet> sheets_of(const PlacedMesh& placed) {
   const Labelling cut = cut_complex(placed.lattice_mesh, division->complex, CutWeight::area, {});
   return split_into_sheets(
       placed.mesh, placed.topology,
-      extract(placed.lattice_mesh, division->decomposition.octree, division->complex, cut), placed.mesh);
+      separating(extract(placed.lattice_mesh, division->decomposition.octree, division->complex, cut)),
+      placed.mesh);
 }
 
 std::vector<Index> steiner_points(const PatchMesh& mesh) {

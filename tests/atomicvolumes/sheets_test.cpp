@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/sheets.h"
+#include "common/core/sheets.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <set>
 #include <vector>
 
-#include "filter_atomicvolumes/rim_patch.h"
+#include "common/core/rim_patch.h"
+#include "filter_atomicvolumes/extraction.h"
 #include "tests/support/complexes.h"
 #include "tests/support/volumes.h"
 
@@ -74,9 +75,9 @@ void expect_sheets(const PlacedMesh& placed, const std::vector<Sheet>& sheets) {
   ASSERT_EQ(all, placed.topology.boundary_half_edges) << "every boundary edge in just one sheet";
 }
 
-LabelledSurface surface_of(const PlacedMesh& placed, const test::Division& division,
-                           const Labelling& labelling) {
-  return extract(placed.lattice_mesh, division.decomposition.octree, division.complex, labelling);
+SeparatingSurface surface_of(const PlacedMesh& placed, const test::Division& division,
+                             const Labelling& labelling) {
+  return separating(extract(placed.lattice_mesh, division.decomposition.octree, division.complex, labelling));
 }
 
 // Random labels make volumes touch in every way there is.
@@ -100,16 +101,10 @@ TEST(Sheets, AnyLabellingComesApartIntoManifolds) {
 }
 
 /// The fourth face of a tetrahedron as a surface, for the three others without it.
-LabelledSurface fourth_face(const TriangleMesh& whole) {
-  LabelledSurface surface;
-  for (Index v : whole.triangles[0]) {
-    VolumeVertex vertex;
-    vertex.position = whole.vertices[v];
-    vertex.input = v;
-    surface.vertices.push_back(vertex);
-  }
+SeparatingSurface fourth_face(const TriangleMesh& whole) {
+  SeparatingSurface surface;
+  for (Index v : whole.triangles[0]) surface.vertices.push_back({whole.vertices[v], v});
   surface.triangles = {{0, 1, 2}};
-  surface.volumes = {{inside_cell, outside_cell}};
   return surface;
 }
 

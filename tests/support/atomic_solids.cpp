@@ -122,9 +122,8 @@ AtomicSolid complete_by_cut(const TriangleMesh& mesh, const VolumeConstraints& c
   }
   const Labelling labelling = cut_complex(placed, complex, weight, tied.ties);
   AtomicSolid solid;
-  glue(mesh, topology,
-       split_into_sheets(mesh, topology, extract(placed, decomposition.octree, complex, labelling), mesh),
-       solid);
+  const SeparatingSurface surface = separating(extract(placed, decomposition.octree, complex, labelling));
+  glue(mesh, topology, split_into_sheets(mesh, topology, surface, mesh), solid);
   solid.leaves = decomposition.octree.size();
   solid.notes = prepared.notes();
   solid.notes.insert(solid.notes.end(), tied.notes.begin(), tied.notes.end());

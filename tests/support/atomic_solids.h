@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/core/mesh.h"
+#include "common/core/sheets.h"
 #include "filter_atomicvolumes/constraints.h"
-#include "filter_atomicvolumes/sheets.h"
 
 namespace meshcomplete {
 namespace test {

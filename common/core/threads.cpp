@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/threads.h"
+#include "common/core/threads.h"
 
 #include <tbb/parallel_for.h>
 

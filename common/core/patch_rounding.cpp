@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/patch_rounding.h"
+#include "common/core/patch_rounding.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/patch_pieces.h"
+#include "common/core/patch_pieces.h"
 
 #include <gtest/gtest.h>
 

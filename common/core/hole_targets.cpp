@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/hole_targets.h"
+#include "common/core/hole_targets.h"
 
 #include <algorithm>
 

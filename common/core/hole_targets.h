@@ -1,4 +1,4 @@
-// Which boundary loops a completion by volumes works on.
+// Which boundary loops a completion of all holes at once works on.
 #pragma once
 
 #include <vector>

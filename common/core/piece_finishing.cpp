@@ -1,12 +1,12 @@
-#include "filter_atomicvolumes/piece_finishing.h"
+#include "common/core/piece_finishing.h"
 
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "common/core/threads.h"
 #include "common/core/triangle_intersection.h"
-#include "filter_atomicvolumes/threads.h"
 
 namespace meshcomplete {
 namespace {
@@ -18,7 +18,7 @@ constexpr const char* meets_another = "the patch meets the patch of another hole
 
 }  // namespace
 
-// Makes the patch of volume faces, joined to the mesh.
+// Makes the rough patch, joined to the mesh.
 void PieceFinisher::prepare(PatchPiece& piece, const Progress& progress) const {
   RimPatch rough = make_rim_patch(mesh_, topology_, piece.sheet);
   remove_steiner_points(rough, divided_, {}, progress);
@@ -121,7 +121,10 @@ std::vector<std::size_t> PieceFinisher::in_conflict(const std::vector<PatchPiece
 }
 
 void PieceFinisher::leave_plain(PatchPiece& piece, const Progress& progress) const {
-  finish_one(piece, {false, std::nullopt, std::nullopt}, {}, progress);
+  FinishingOptions plain = options_;
+  plain.remesh = false;
+  plain.fairing.reset();
+  finish_one(piece, plain, {}, progress);
 }
 
 bool PieceFinisher::finish_beside(std::vector<PatchPiece>& pieces, std::size_t piece,

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/core/finishing.h"
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch_check.h"
+#include "common/core/patch_pieces.h"
 #include "common/core/progress.h"
-#include "filter_atomicvolumes/finishing.h"
-#include "filter_atomicvolumes/patch_pieces.h"
 
 namespace meshcomplete {
 
@@ -27,7 +27,7 @@ class PieceFinisher {
   void finish(std::vector<PatchPiece>& pieces, std::size_t first, const Progress& progress) const;
 
   /// Patches that were finished each for itself may meet. The later one is finished again with the others in
-  /// its way. Where that is no help it goes back to the faces of the volumes, which meet those of no other
+  /// its way. Where that is no help it goes back to the rough patch, which meets those of no other
   /// piece, those that meet it are finished again with it in their way, and then it with them in its. What
   /// still meets another then has a defect.
   void separate(std::vector<PatchPiece>& pieces, const Progress& progress) const;

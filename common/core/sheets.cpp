@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/sheets.h"
+#include "common/core/sheets.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,12 +9,12 @@
 #include <unordered_set>
 #include <utility>
 
-#include "filter_atomicvolumes/touching_fans.h"
+#include "common/core/touching_fans.h"
 
 namespace meshcomplete {
 namespace {
 
-constexpr Index none = VolumeVertex::none;
+constexpr Index none = SheetVertex::none;
 
 // One side of a triangle, from `low` to `high` when `forward`.
 struct FaceSide {
@@ -28,7 +28,7 @@ struct FaceSide {
 
 class Splitter {
  public:
-  Splitter(const TriangleMesh& mesh, const MeshTopology& topology, const LabelledSurface& surface,
+  Splitter(const TriangleMesh& mesh, const MeshTopology& topology, const SeparatingSurface& surface,
            const TriangleMesh& input)
       : mesh_(mesh),
         input_(input),
@@ -65,7 +65,7 @@ class Splitter {
 
   const TriangleMesh &mesh_, &input_;
   const MeshTopology& topology_;
-  const LabelledSurface& surface_;
+  const SeparatingSurface& surface_;
   std::vector<Index> parent_;   // of corners: those of one fan hang together
   std::vector<Index> partner_;  // the half-edge at the other side of an edge
   std::vector<Index> rim_;      // the mesh's boundary half-edge at a half-edge of the patch
@@ -91,8 +91,8 @@ void Splitter::index_rim_edges() {
 
 // The mesh's boundary half-edge on which the edge lies.
 Index Splitter::rim_edge(Index from, Index to) const {
-  const VolumeVertex &a = surface_.vertices[from], &b = surface_.vertices[to];
-  const auto on_rim = [](const VolumeVertex& v) { return v.input != none || v.rim_edge != none; };
+  const SheetVertex &a = surface_.vertices[from], &b = surface_.vertices[to];
+  const auto on_rim = [](const SheetVertex& v) { return v.input != none || v.rim_edge != none; };
   if (!on_rim(a) || !on_rim(b)) return none;
   if (a.input != none && b.input != none) {
     const auto found = boundary_.find(pair_key(a.input, b.input));
@@ -100,7 +100,7 @@ Index Splitter::rim_edge(Index from, Index to) const {
   }
   const Index edge = a.rim_edge != none ? a.rim_edge : b.rim_edge;
   const Triangle& t = mesh_.triangles[edge / 3];
-  const auto belongs = [&](const VolumeVertex& v) {
+  const auto belongs = [&](const SheetVertex& v) {
     return v.rim_edge == edge || v.input == t[edge % 3] || v.input == t[(edge % 3 + 1) % 3];
   };
   return belongs(a) && belongs(b) ? edge : none;
@@ -187,9 +187,9 @@ void Splitter::number_fans() {
     const Index fan = root(corner), v = vertex(corner);
     if (number[fan] == none) {
       number[fan] = static_cast<Index>(vertices_.size());
-      const VolumeVertex& original = surface_.vertices[v];
+      const SheetVertex& original = surface_.vertices[v];
       const bool on_rim = original.input != none || original.rim_edge != none;
-      SheetVertex one{original.position, none, none, original.key.is_cut()};
+      SheetVertex one{original.position, none, none, original.cut};
       if (at_rim[fan]) {
         one.input = original.input;
         one.rim_edge = original.rim_edge;
@@ -260,16 +260,15 @@ void Splitter::divide(Index triangle, const Index* middle) {
   if (outline.size() == 3) return;
   std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(first), outline.end());
   triangles_[triangle] = {outline[0], outline[1], outline[2]};
-  for (std::size_t i = 2; i + 1 < outline.size(); ++i) {
+  for (std::size_t i = 2; i + 1 < outline.size(); ++i)
     triangles_.push_back({outline[0], outline[i], outline[i + 1]});
-  }
 }
 
 void Splitter::separate_doubles() {
   std::vector<TouchingFan> fans;
   for (Index v = 0; v < vertices_.size(); ++v) {
     if (!doubled_[v]) continue;
-    const VolumeVertex* original = origin_[v] == none ? nullptr : &surface_.vertices[origin_[v]];
+    const SheetVertex* original = origin_[v] == none ? nullptr : &surface_.vertices[origin_[v]];
     fans.push_back({v, original ? original->input : none, original ? original->rim_edge : none});
   }
   retreat(mesh_, fans, triangles_, vertices_);
@@ -337,7 +336,7 @@ std::vector<Sheet> Splitter::run() {
 }  // namespace
 
 std::vector<Sheet> split_into_sheets(const TriangleMesh& mesh, const MeshTopology& topology,
-                                     const LabelledSurface& surface, const TriangleMesh& input) {
+                                     const SeparatingSurface& surface, const TriangleMesh& input) {
   return Splitter(mesh, topology, surface, input).run();
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/core/mesh.h"
-#include "filter_atomicvolumes/sheets.h"
+#include "common/core/sheets.h"
 
 namespace meshcomplete {
 

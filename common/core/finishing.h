@@ -1,4 +1,4 @@
-// From a clean patch of volume faces to a fair one with the resolution of the mesh round it.
+// From a clean but rough patch to a fair one with the resolution of the mesh round it.
 #pragma once
 
 #include <array>
@@ -20,6 +20,8 @@ struct FinishingOptions {
   bool remesh = true;  ///< give it the resolution of the mesh around
   std::optional<SurfaceEnergy> fairing = SurfaceEnergy::normal_variation;  ///< absent: none
   std::optional<double> edge_length;                                       ///< absent: as the mesh around
+  /// The route of a patch that could only be left as it came.
+  std::string plain_route = "faces of the volumes";
 };
 
 /// What a patch is finished against.

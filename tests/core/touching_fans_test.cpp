@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/touching_fans.h"
+#include "common/core/touching_fans.h"
 
 #include <gtest/gtest.h>
 

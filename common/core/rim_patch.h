@@ -13,7 +13,7 @@
 #include "common/core/patch_mesh.h"
 #include "common/core/progress.h"
 #include "common/core/rim.h"
-#include "filter_atomicvolumes/sheets.h"
+#include "common/core/sheets.h"
 
 namespace meshcomplete {
 

@@ -1,11 +1,11 @@
-#include "filter_atomicvolumes/rim_patch.h"
+#include "common/core/rim_patch.h"
 
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
-#include "filter_atomicvolumes/patch_rounding.h"
+#include "common/core/patch_rounding.h"
 
 namespace meshcomplete {
 namespace {

@@ -13,17 +13,17 @@
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/patch.h"
-#include "filter_atomicvolumes/rim_patch.h"
-#include "filter_atomicvolumes/sheets.h"
+#include "common/core/rim_patch.h"
+#include "common/core/sheets.h"
 
 namespace meshcomplete {
 
-/// A connected piece of the patch, from the faces of the volumes to what is appended to the mesh.
+/// A connected piece of the patch, from its first triangles to what is appended to the mesh.
 struct PatchPiece {
   Sheet sheet;
   std::vector<std::size_t> loops;  ///< that it closes, or parts of them; ascending
   bool wanted = false;
-  std::optional<RimPatch> rough;  ///< faces of the volumes, joined to the mesh
+  std::optional<RimPatch> rough;  ///< its first triangles, joined to the mesh
   Patch patch;
   std::string route;   ///< how it was finished
   std::string defect;  ///< why there is no patch; empty when there is

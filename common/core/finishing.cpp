@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/finishing.h"
+#include "common/core/finishing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,7 +165,7 @@ FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, co
                      const Progress& progress) {
   Finisher finisher(rough, options, context);
   if (options.remesh || options.fairing) {
-    // A membrane stays close to the faces of the volumes, which meet nothing.
+    // A membrane stays close to the rough patch, which meets nothing.
     std::vector<std::optional<SurfaceEnergy>> energies = {options.fairing};
     if (options.fairing && *options.fairing != SurfaceEnergy::membrane)
       energies.push_back(SurfaceEnergy::membrane);
@@ -183,7 +183,7 @@ FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, co
     FinishedPatch guarded = finisher.guarded(progress);
     if (guarded.defect.empty()) return guarded;
   }
-  FinishedPatch plain{rough, "faces of the volumes", ""};
+  FinishedPatch plain{rough, options.plain_route, ""};
   plain.mesh.compact();
   plain.defect = context.find(plain.mesh).defect;
   return plain;
