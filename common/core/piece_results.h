@@ -1,0 +1,32 @@
+// Which pieces of a patch are asked for, and what became of the holes that they close.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/core/boundary_loops.h"
+#include "common/core/mesh.h"
+#include "common/core/patch.h"
+#include "common/core/patch_pieces.h"
+
+namespace meshcomplete {
+
+/// Marks the pieces that close targeted loops as wanted, as far as nothing keeps their groups from closing
+/// all their loops, and tells the targeted holes whose patches are not wanted why. `describe_flaw` says what
+/// a user is told of a flaw. Returns for each loop whether its patch closes another loop too that is to stay
+/// open or cannot be closed. Cost: O(n log n).
+std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vector<BoundaryLoop>& loops,
+                                std::vector<HoleReport>& holes,
+                                const std::function<std::string(Sheet::Flaw)>& describe_flaw);
+
+/// The patches of the wanted pieces, and the report with one hole for each group of loops that are closed
+/// together. A targeted hole without a piece or reason gets "no patch reaches this rim". Cost: O(patch).
+Completion gather_pieces(const TriangleMesh& mesh, const std::vector<PatchPiece>& pieces,
+                         CompletionReport report);
+
+/// A rim that no patch should close by itself, but that may be part of a larger hole: that of a single
+/// triangle.
+bool may_join(const BoundaryLoop& loop, const HoleReport& hole);
+
+}  // namespace meshcomplete

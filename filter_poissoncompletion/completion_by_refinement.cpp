@@ -1,0 +1,159 @@
+#include "filter_poissoncompletion/completion_by_refinement.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/core/error.h"
+#include "common/core/hole_targets.h"
+#include "common/core/patch_pieces.h"
+#include "common/core/piece_finishing.h"
+#include "common/core/piece_results.h"
+#include "common/core/rim.h"
+#include "common/core/sheets.h"
+#include "common/core/stage_clock.h"
+#include "filter_poissoncompletion/cushion.h"
+#include "filter_poissoncompletion/delaunay_refinement.h"
+#include "filter_poissoncompletion/edge_length_field.h"
+#include "filter_poissoncompletion/initial_points.h"
+
+namespace meshcomplete {
+namespace {
+
+std::string describe(Sheet::Flaw flaw) {
+  switch (flaw) {
+    case Sheet::Flaw::none:
+      break;
+    case Sheet::Flaw::open:
+      return "the reconstructed surface does not separate this hole from the rest of the mesh";
+    case Sheet::Flaw::joins_vertices:
+      return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
+             "'Merge Close Vertices' first";
+  }
+  return "";
+}
+
+class Run {
+ public:
+  Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
+      const InputNeighbourhood& input, const ImplicitFunction& function,
+      const RefinedCompletionOptions& options, CompletionReport& report)
+      : mesh_(mesh),
+        topology_(topology),
+        loops_(loops),
+        input_(input),
+        function_(function),
+        options_(options),
+        report_(report),
+        field_(make_field()),
+        cushion_(make_cushion()) {}
+
+  std::vector<PatchPiece> pieces(RefinedCompletionFigures& figures, const Progress& progress);
+
+ private:
+  std::vector<const BoundaryLoop*> targets() const;
+  EdgeLengthField make_field() const;
+  Cushion make_cushion() const;
+
+  const TriangleMesh& mesh_;
+  const MeshTopology& topology_;
+  const std::vector<BoundaryLoop>& loops_;
+  const InputNeighbourhood& input_;
+  const ImplicitFunction& function_;
+  const RefinedCompletionOptions& options_;
+  CompletionReport& report_;
+  const EdgeLengthField field_;
+  const Cushion cushion_;
+};
+
+std::vector<const BoundaryLoop*> Run::targets() const {
+  std::vector<const BoundaryLoop*> result;
+  for (std::size_t i = 0; i < loops_.size(); ++i)
+    if (is_targeted(report_.holes[i]) || may_join(loops_[i], report_.holes[i])) result.push_back(&loops_[i]);
+  return result;
+}
+
+EdgeLengthField Run::make_field() const {
+  if (options_.edge_length) return EdgeLengthField(*options_.edge_length);
+  std::vector<RimSample> samples;
+  for (const BoundaryLoop* loop : targets()) {
+    const Rim rim = collect_rim(mesh_, topology_, *loop);
+    const std::vector<RimSample> more = smoothed_samples(rim.positions, rim.edge_length);
+    samples.insert(samples.end(), more.begin(), more.end());
+  }
+  return EdgeLengthField(std::move(samples));
+}
+
+Cushion Run::make_cushion() const {
+  if (options_.cushion_radius) return Cushion(input_.blocks(), *options_.cushion_radius);
+  const auto radius = [this](const Vector3& at) {
+    const double at_rims = options_.cushion * field_.at(at);
+    const double beyond = field_.distance(at) - options_.rings * at_rims;
+    return std::isfinite(beyond) && beyond > 0 ? at_rims + options_.cushion_growth * beyond : at_rims;
+  };
+  return Cushion(input_.blocks(), radius, std::numeric_limits<double>::infinity());
+}
+
+std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Progress& progress) {
+  StageClock clock(report_);
+  const InitialPoints points =
+      choose_initial_points(mesh_, topology_, targets(), options_.rings, options_.sample_share);
+  std::vector<Vector3> positions;
+  std::vector<Index> number(mesh_.vertices.size(), 0);
+  for (Index v : points.vertices) {
+    number[v] = static_cast<Index>(positions.size());
+    positions.push_back(mesh_.vertices[v]);
+  }
+  RefinementOptions refinement;
+  refinement.criteria.edge_length = [this](const Vector3& at) { return field_.at(at); };
+  refinement.criteria.smallest_angle = options_.smallest_angle;
+  refinement.cushion = &cushion_;
+  refinement.seeds.assign(positions.size(), 0);
+  std::fill_n(refinement.seeds.begin(), points.on_rims, 1);
+  for (Index h : points.half_edges)
+    refinement.protected_edges.emplace_back(number[mesh_.triangles[h / 3][h % 3]],
+                                            number[mesh_.triangles[h / 3][(h % 3 + 1) % 3]]);
+  clock.end_of("choosing the first points");
+  const DelaunayComplex complex =
+      refine_delaunay(function_, positions, refinement, progress.part(0, 0.6, "refining the surface"));
+  clock.end_of("refining the surface");
+  figures.initial_points = positions.size();
+  figures.points = complex.vertices.size();
+  figures.cells = complex.cells.size();
+  figures.lost_edges = complex.lost_edges.size();
+  const SeparatingSurface surface =
+      tailor({mesh_, topology_, complex, points.vertices, points.ring_faces, points.half_edges},
+             figures.tailoring, progress.part(0.6, 0.7, "tailoring the patches"));
+  std::vector<PatchPiece> pieces =
+      make_pieces(split_into_sheets(mesh_, topology_, surface, mesh_), topology_, LoopNumbers(mesh_, loops_));
+  clock.end_of("tailoring the patches");
+  return pieces;
+}
+
+}  // namespace
+
+RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTopology& topology,
+                                         const std::vector<BoundaryLoop>& loops,
+                                         const InputNeighbourhood& input, const ImplicitFunction& function,
+                                         const RefinedCompletionOptions& options, CompletionReport report,
+                                         const Progress& progress) {
+  RefinedCompletion result;
+  std::vector<PatchPiece> pieces;
+  if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
+    Run run(mesh, topology, loops, input, function, options, report);
+    pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));
+    choose_pieces(pieces, loops, report.holes, [](Sheet::Flaw flaw) { return describe(flaw); });
+    StageClock clock(report);
+    FinishingOptions finishing = options.finishing;
+    if (!finishing.edge_length) finishing.edge_length = options.edge_length;
+    const PieceFinisher finisher(mesh, topology, input, input, finishing);
+    finisher.finish(pieces, 0, progress.part(0.7, 0.95, "joining the patches"));
+    finisher.separate(pieces, progress.part(0.95, 1, "comparing the patches"));
+    clock.end_of("joining the patches");
+  }
+  progress.update(1);
+  result.completion = gather_pieces(mesh, pieces, std::move(report));
+  return result;
+}
+
+}  // namespace meshcomplete

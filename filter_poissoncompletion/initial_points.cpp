@@ -1,0 +1,116 @@
+#include "filter_poissoncompletion/initial_points.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_set>
+
+namespace meshcomplete {
+namespace {
+
+// Cells of the sampling's grid along the longest side of a component: some samples of every one, however
+// small.
+constexpr double least_cells = 4;
+
+class PointChooser {
+ public:
+  explicit PointChooser(const TriangleMesh& mesh) : mesh_(mesh), chosen_(mesh.vertices.size(), 0) {}
+
+  InitialPoints run(const MeshTopology& topology, const std::vector<const BoundaryLoop*>& loops, int rings,
+                    double sample_share) {
+    take_rims(loops);
+    take_rings(rings);
+    if (sample_share > 0) take_samples(topology, sample_share);
+    return std::move(points_);
+  }
+
+ private:
+  void take(Index v) {
+    if (chosen_[v]) return;
+    chosen_[v] = 1;
+    points_.vertices.push_back(v);
+  }
+
+  void take_rims(const std::vector<const BoundaryLoop*>& loops) {
+    for (const BoundaryLoop* loop : loops)
+      for (std::size_t k = 0; k < loop->faces.size(); ++k)
+        points_.half_edges.push_back(half_edge_at(mesh_, *loop, k));
+    for (Index h : points_.half_edges) {
+      take(mesh_.triangles[h / 3][h % 3]);
+      take(mesh_.triangles[h / 3][(h % 3 + 1) % 3]);
+    }
+    points_.on_rims = points_.vertices.size();
+  }
+
+  void take_rings(int rings) {
+    std::vector<char> in_ring(mesh_.triangles.size(), 0);
+    for (int ring = 0; ring < rings; ++ring) {
+      std::vector<Index> fresh;
+      for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+        const Triangle& corners = mesh_.triangles[t];
+        if (in_ring[t] || std::none_of(corners.begin(), corners.end(), [&](Index v) { return chosen_[v]; }))
+          continue;
+        in_ring[t] = 1;
+        fresh.push_back(t);
+      }
+      for (Index t : fresh)
+        for (Index v : mesh_.triangles[t]) take(v);
+    }
+    for (Index t = 0; t < in_ring.size(); ++t)
+      if (in_ring[t]) points_.ring_faces.push_back(t);
+  }
+
+  // The first vertex in every cell of a grid, for each component by itself.
+  void take_samples(const MeshTopology& topology, double share) {
+    std::vector<Index> parent(mesh_.triangles.size());
+    std::iota(parent.begin(), parent.end(), Index(0));
+    const auto root = [&](Index i) {
+      while (parent[i] != i) i = parent[i] = parent[parent[i]];
+      return i;
+    };
+    std::vector<Eigen::AlignedBox3d> box(mesh_.triangles.size());
+    double area = 0;
+    for (Index h = 0; h < topology.opposite.size(); ++h)
+      if (topology.opposite[h] < h) parent[root(h / 3)] = root(topology.opposite[h] / 3);
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+      Eigen::AlignedBox3d& whole = box[root(t)];
+      Vector3 p[3];
+      for (int k = 0; k < 3; ++k) whole.extend(p[k] = mesh_.vertices[mesh_.triangles[t][k]]);
+      area += 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
+    }
+    const double wanted = share * static_cast<double>(mesh_.vertices.size());
+    const double spacing = std::sqrt(area / std::max(wanted, 1.0));
+    std::unordered_set<std::uint64_t> taken;
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+      const Index component = root(t);
+      const double cell = std::min(spacing, box[component].sizes().maxCoeff() / least_cells);
+      if (!(cell > 0)) continue;
+      for (Index v : mesh_.triangles[t]) {
+        if (chosen_[v]) continue;
+        std::uint64_t key = component;
+        for (int k = 0; k < 3; ++k) {
+          const double step = std::floor((mesh_.vertices[v][k] - box[component].min()[k]) / cell);
+          key = (key ^ static_cast<std::uint64_t>(step)) * 0x9e3779b97f4a7c15u;
+          key ^= key >> 29;
+        }
+        if (taken.insert(key).second) take(v);
+      }
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<char> chosen_;
+  InitialPoints points_;
+};
+
+}  // namespace
+
+InitialPoints choose_initial_points(const TriangleMesh& mesh, const MeshTopology& topology,
+                                    const std::vector<const BoundaryLoop*>& loops, int rings,
+                                    double sample_share) {
+  return PointChooser(mesh).run(topology, loops, rings, sample_share);
+}
+
+}  // namespace meshcomplete
