@@ -20,6 +20,10 @@
 namespace meshcomplete {
 namespace {
 
+// How far from the rims all vertices of the mesh are in the triangulation, in target edge lengths: beyond the
+// balls of the first facets at the rims, so that these see what is behind them.
+constexpr double near_rims = 2.5;
+
 std::string describe(Sheet::Flaw flaw) {
   switch (flaw) {
     case Sheet::Flaw::none:
@@ -96,8 +100,10 @@ Cushion Run::make_cushion() const {
 
 std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Progress& progress) {
   StageClock clock(report_);
-  const InitialPoints points =
-      choose_initial_points(mesh_, topology_, targets(), options_.rings, options_.sample_share);
+  const InitialPoints points = choose_initial_points(
+      mesh_, topology_, targets(), options_.rings,
+      [this](const Vector3& at) { return near_rims * field_.at(at); }, input_.blocks(),
+      options_.sample_share);
   std::vector<Vector3> positions;
   std::vector<Index> number(mesh_.vertices.size(), 0);
   for (Index v : points.vertices) {
@@ -107,7 +113,7 @@ std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Pro
   RefinementOptions refinement;
   refinement.criteria.edge_length = [this](const Vector3& at) { return field_.at(at); };
   refinement.criteria.smallest_angle = options_.smallest_angle;
-  refinement.cushion = &cushion_;
+  refinement.around.emplace(ProtectedMesh{mesh_, cushion_, points.vertices});
   refinement.seeds.assign(positions.size(), 0);
   std::fill_n(refinement.seeds.begin(), points.on_rims, 1);
   for (Index h : points.half_edges)
@@ -122,8 +128,8 @@ std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Pro
   figures.cells = complex.cells.size();
   figures.lost_edges = complex.lost_edges.size();
   const SeparatingSurface surface =
-      tailor({mesh_, topology_, complex, points.vertices, points.ring_faces, points.half_edges},
-             figures.tailoring, progress.part(0.6, 0.7, "tailoring the patches"));
+      tailor({mesh_, topology_, complex, points.half_edges, points.rim_edges}, figures.tailoring,
+             progress.part(0.6, 0.7, "tailoring the patches"));
   std::vector<PatchPiece> pieces =
       make_pieces(split_into_sheets(mesh_, topology_, surface, mesh_), topology_, LoopNumbers(mesh_, loops_));
   clock.end_of("tailoring the patches");

@@ -34,9 +34,10 @@ std::optional<Cushion::Nearest> Cushion::nearest(const Vector3& point) const {
   return found;
 }
 
-bool Cushion::contains(const Vector3& point) const {
-  const std::optional<Nearest> near = nearest(point);
-  return near && near->distance < radius_(near->position);
+std::optional<Cushion::Nearest> Cushion::within(const Vector3& point) const {
+  std::optional<Nearest> near = nearest(point);
+  if (near && !(near->distance < radius_(near->position))) near.reset();
+  return near;
 }
 
 }  // namespace meshcomplete

@@ -33,9 +33,10 @@ class Cushion {
   /// boxes are nearer than what was found first).
   std::optional<Nearest> nearest(const Vector3& point) const;
 
-  /// Whether the point is nearer to the mesh than the radius at the nearest point of the mesh. Cost: as
-  /// `nearest`.
-  bool contains(const Vector3& point) const;
+  /// The nearest point of the mesh when the radius there is greater than its distance, so that the point is
+  /// in the cushion. Cost: as `nearest`.
+  std::optional<Nearest> within(const Vector3& point) const;
+  bool contains(const Vector3& point) const { return within(point).has_value(); }
 
  private:
   const TriangleBlocks& mesh_;

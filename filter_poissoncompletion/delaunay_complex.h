@@ -21,6 +21,8 @@ struct DelaunayComplex {
   static constexpr Index far_corners = 8;
   /// For each vertex: the protected edge (by its number) that it divides, or `none`.
   std::vector<Index> on_edge;
+  /// For each vertex: the vertex of the protected mesh that it is, or `none`.
+  std::vector<Index> mesh_vertex;
 
   using Cell = std::array<Index, 4>;
   /// Corners of each cell; the last one lies on the side from which the first three look counter-clockwise.
@@ -36,8 +38,9 @@ struct DelaunayComplex {
   std::vector<Index> lost_edges;
 
   bool is_far(Index vertex) const { return vertex - initial_points < far_corners; }
+  /// Whether the vertex was inserted on the surface, and is none of the protected mesh's.
   bool is_new(Index vertex) const {
-    return vertex >= initial_points + far_corners && on_edge[vertex] == none;
+    return vertex >= initial_points + far_corners && on_edge[vertex] == none && mesh_vertex[vertex] == none;
   }
 };
 

@@ -113,7 +113,9 @@ class Refiner {
   VertexInfo info(Index number, const Vector3& position, bool reached) const;
   CellHandle conflicting(const Vector3& position, const CellHandle& near, const CellHandle& other) const;
   VertexHandle insert(const Vector3& position, const CellHandle& near, const CellHandle& other, bool reached,
-                      Index on_edge);
+                      Index on_edge, Index mesh_vertex);
+  void insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
+                          const CellHandle& other);
   bool protect_edges();
   bool protect(std::size_t edge);
   Vector3 division(const std::vector<VertexHandle>& chain, std::size_t piece) const;
@@ -141,7 +143,8 @@ class Refiner {
   std::vector<std::vector<VertexHandle>> chains_;  // of protected edges
   std::vector<Index> lost_edges_;
   std::vector<Vector3> added_;
-  std::vector<Index> added_on_edge_;
+  std::vector<Index> added_on_edge_, added_mesh_vertex_;
+  std::vector<char> inserted_;     // vertices of the protected mesh
   std::vector<char> alive_ = {0};  // by stamp
   std::priority_queue<QueuedFacet> queue_;
   // Scratch.
@@ -182,6 +185,7 @@ void Refiner::insert_initial() {
     const Vector3 way(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]);
     added_.push_back(middle + far_scale * way);
     added_on_edge_.push_back(DelaunayComplex::none);
+    added_mesh_vertex_.push_back(DelaunayComplex::none);
     points.emplace_back(point_of(added_.back()), info(initial_count_ + k, added_.back(), false));
   }
   triangulation_.insert(points.begin(), points.end());
@@ -189,6 +193,10 @@ void Refiner::insert_initial() {
   for (auto v = triangulation_.finite_vertices_begin(); v != triangulation_.finite_vertices_end(); ++v)
     if (v->info().number < initial_count_) handle_of_[v->info().number] = v;
   for (std::size_t i = 0; i < handle_of_.size(); ++i) handle_of_[i] = handle_of_[first[i]];
+  if (options_.around) {
+    inserted_.assign(options_.around->mesh.vertices.size(), 0);
+    for (Index v : options_.around->initial) inserted_[v] = 1;
+  }
   for (const auto& [a, b] : options_.protected_edges) chains_.push_back({handle_of_[a], handle_of_[b]});
 }
 
@@ -207,7 +215,7 @@ CellHandle Refiner::conflicting(const Vector3& position, const CellHandle& near,
 }
 
 VertexHandle Refiner::insert(const Vector3& position, const CellHandle& near, const CellHandle& other,
-                             bool reached, Index on_edge) {
+                             bool reached, Index on_edge, Index mesh_vertex) {
   if (added_.size() >= options_.max_points + DelaunayComplex::far_corners)
     throw CompletionError(stage, "The surface would need more than " + std::to_string(options_.max_points) +
                                      " vertices. Choose a greater edge length.");
@@ -223,6 +231,7 @@ VertexHandle Refiner::insert(const Vector3& position, const CellHandle& near, co
   v->info() = info(initial_count_ + static_cast<Index>(added_.size()), position, reached);
   added_.push_back(position);
   added_on_edge_.push_back(on_edge);
+  added_mesh_vertex_.push_back(mesh_vertex);
   if (alive_.size() == 1) return v;  // nothing has been evaluated yet
   cells_.clear();
   triangulation_.incident_cells(v, std::back_inserter(cells_));
@@ -260,7 +269,8 @@ bool Refiner::protect(std::size_t edge) {
     const Vector3 p = vector_of(a->point());
     const VertexHandle v = chain.size() > most_pieces || (at - p).norm() < least_piece * stored_resolution(p)
                                ? VertexHandle()
-                               : insert(at, a->cell(), CellHandle(), true, static_cast<Index>(edge));
+                               : insert(at, a->cell(), CellHandle(), a->info().reached && b->info().reached,
+                                        static_cast<Index>(edge), DelaunayComplex::none);
     if (v == VertexHandle()) {
       lost_edges_.push_back(static_cast<Index>(edge));
       return any;
@@ -387,8 +397,29 @@ void Refiner::refine(const QueuedFacet& facet) {
   const std::optional<Vector3> at = surface_centre(facet.cell, facet.corner);
   if (!at) return;
   const Vector3 stored = as_stored(*at);
-  if (options_.cushion && options_.cushion->contains(stored)) return;
-  insert(stored, facet.cell, other, true, DelaunayComplex::none);
+  if (options_.around) {
+    const std::optional<Cushion::Nearest> nearest = options_.around->cushion.within(stored);
+    if (nearest) return insert_mesh_vertex(*nearest, stored, facet.cell, other);
+  }
+  insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none);
+}
+
+// What the refinement has come near to has to be there in its own resolution, or the surface is taken for
+// one with it.
+void Refiner::insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
+                                 const CellHandle& other) {
+  const TriangleMesh& mesh = options_.around->mesh;
+  Index best = DelaunayComplex::none;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index v : mesh.triangles[nearest.triangle]) {
+    const double squared = (mesh.vertices[v] - at).squaredNorm();
+    if (inserted_[v] || squared >= least) continue;
+    best = v;
+    least = squared;
+  }
+  if (best == DelaunayComplex::none) return;
+  inserted_[best] = 1;
+  insert(mesh.vertices[best], near, other, false, DelaunayComplex::none, best);
 }
 
 void Refiner::refine_queue() {
@@ -441,6 +472,9 @@ DelaunayComplex Refiner::complex() const {
   result.vertices.insert(result.vertices.end(), added_.begin(), added_.end());
   result.on_edge.assign(initial_.size(), DelaunayComplex::none);
   result.on_edge.insert(result.on_edge.end(), added_on_edge_.begin(), added_on_edge_.end());
+  if (options_.around) result.mesh_vertex = options_.around->initial;
+  result.mesh_vertex.resize(initial_.size(), DelaunayComplex::none);
+  result.mesh_vertex.insert(result.mesh_vertex.end(), added_mesh_vertex_.begin(), added_mesh_vertex_.end());
   std::vector<Index> number(alive_.size(), DelaunayComplex::none);  // by stamp
   std::vector<CellHandle> cells;
   for (auto c = triangulation_.finite_cells_begin(); c != triangulation_.finite_cells_end(); ++c) {

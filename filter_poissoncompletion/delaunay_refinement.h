@@ -30,10 +30,16 @@ struct RefinementCriteria {
   std::optional<double> distance;
 };
 
+/// The mesh that a refinement leaves alone.
+struct ProtectedMesh {
+  const TriangleMesh& mesh;
+  const Cushion& cushion;             ///< where no point is inserted but vertices of the mesh
+  const std::vector<Index>& initial;  ///< the mesh's vertex at each initial point
+};
+
 struct RefinementOptions {
   RefinementCriteria criteria;
-  /// Where no point is inserted; null: nowhere.
-  const Cushion* cushion = nullptr;
+  std::optional<ProtectedMesh> around;
   /// One per initial point: only facets with such a corner or an inserted one are refined, so that the
   /// refinement grows from there. Empty: all facets are.
   std::vector<char> seeds;
@@ -47,12 +53,13 @@ struct RefinementOptions {
 
 /// Refines the Delaunay triangulation of the initial points until the facets between cells of unlike sign
 /// meet the criteria, worst facets first; each time the point where the surface crosses the line between the
-/// two cells' centres is inserted, rounded to what will be stored. A cell's sign is that of the function at
-/// its circumcentre, outside of a box three times as large as that of the points it is outside. Places where
-/// the surface crosses such a line an even number of times are not seen. Source: the paper, algorithm 1.
-/// Deterministic. Throws CompletionError (too many points, fewer than one initial point) and Cancelled. Cost:
-/// O(n log n) for n initial points, threaded in part, and for each inserted one about 25 values of the
-/// function.
+/// two cells' centres is inserted, rounded to what will be stored. Instead of a point in the cushion the
+/// vertex of the mesh's triangle there that is nearest to it is inserted, if any is not yet. A cell's sign is
+/// that of the function at its circumcentre, outside of a box three times as large as that of the points it
+/// is outside. Places where the surface crosses such a line an even number of times are not seen. Source: the
+/// paper, algorithm 1. Deterministic. Throws CompletionError (too many points, fewer than one initial point)
+/// and Cancelled. Cost: O(n log n) for n initial points, threaded in part, and for each inserted one about 25
+/// values of the function.
 DelaunayComplex refine_delaunay(const ImplicitFunction& function, const std::vector<Vector3>& initial,
                                 const RefinementOptions& options, const Progress& progress = Progress());
 

@@ -19,9 +19,12 @@ class PointChooser {
   explicit PointChooser(const TriangleMesh& mesh) : mesh_(mesh), chosen_(mesh.vertices.size(), 0) {}
 
   InitialPoints run(const MeshTopology& topology, const std::vector<const BoundaryLoop*>& loops, int rings,
+                    const std::function<double(const Vector3&)>& neighbourhood, const TriangleBlocks& blocks,
                     double sample_share) {
     take_rims(loops);
+    take_inner_edges(topology);
     take_rings(rings);
+    take_near(neighbourhood, blocks);
     if (sample_share > 0) take_samples(topology, sample_share);
     return std::move(points_);
   }
@@ -44,6 +47,40 @@ class PointChooser {
     points_.on_rims = points_.vertices.size();
   }
 
+  // Of the faces that have a corner on a rim.
+  void take_inner_edges(const MeshTopology& topology) {
+    points_.rim_edges = points_.half_edges.size();
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
+      const Triangle& corners = mesh_.triangles[t];
+      if (std::none_of(corners.begin(), corners.end(), [&](Index v) { return chosen_[v]; })) continue;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+        const Index other = topology.opposite[h];
+        const bool at_rim = chosen_[corners[h % 3]] || chosen_[corners[(h % 3 + 1) % 3]];
+        if (at_rim && other < topology.opposite.size() && other > h) points_.half_edges.push_back(h);
+      }
+    }
+  }
+
+  // What is near a rim without being in its rings: the other side of a thin wall.
+  void take_near(const std::function<double(const Vector3&)>& neighbourhood, const TriangleBlocks& blocks) {
+    const std::size_t rims = points_.on_rims;
+    for (std::size_t i = 0; i < rims; ++i) {
+      const Vector3 at = mesh_.vertices[points_.vertices[i]];
+      const double radius = neighbourhood(at);
+      const Vector3 low = at - Vector3::Constant(radius), high = at + Vector3::Constant(radius);
+      Box box;
+      for (int k = 0; k < 3; ++k) {
+        box.low[k] = low[k];
+        box.high[k] = high[k];
+      }
+      blocks.visit(box, [&](Index t) {
+        for (Index v : mesh_.triangles[t])
+          if ((mesh_.vertices[v] - at).squaredNorm() < radius * radius) take(v);
+        return true;
+      });
+    }
+  }
+
   void take_rings(int rings) {
     std::vector<char> in_ring(mesh_.triangles.size(), 0);
     for (int ring = 0; ring < rings; ++ring) {
@@ -58,8 +95,6 @@ class PointChooser {
       for (Index t : fresh)
         for (Index v : mesh_.triangles[t]) take(v);
     }
-    for (Index t = 0; t < in_ring.size(); ++t)
-      if (in_ring[t]) points_.ring_faces.push_back(t);
   }
 
   // The first vertex in every cell of a grid, for each component by itself.
@@ -109,8 +144,9 @@ class PointChooser {
 
 InitialPoints choose_initial_points(const TriangleMesh& mesh, const MeshTopology& topology,
                                     const std::vector<const BoundaryLoop*>& loops, int rings,
-                                    double sample_share) {
-  return PointChooser(mesh).run(topology, loops, rings, sample_share);
+                                    const std::function<double(const Vector3&)>& neighbourhood,
+                                    const TriangleBlocks& blocks, double sample_share) {
+  return PointChooser(mesh).run(topology, loops, rings, neighbourhood, blocks, sample_share);
 }
 
 }  // namespace meshcomplete

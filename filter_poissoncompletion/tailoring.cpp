@@ -23,7 +23,9 @@ const double unlikeness = std::getenv("UNLIKE") ? std::atof(std::getenv("UNLIKE"
 // The sum of all prices in the graph's units: far from its limit, and fine enough for every facet.
 constexpr double total_price = 1e12;
 
-enum class Place : char { elsewhere, ring, rim, on_rim_edge, fresh };
+// Where a vertex is: far out, a vertex of the mesh, on an inner edge, a vertex of a rim, on a rim's edge, or
+// on the surface alone. Patches have corners at the last three.
+enum class Place : char { elsewhere, mesh, mesh_edge, rim, rim_edge, fresh };
 
 enum Side : char { free = 0, inside = 1, outside = 2, both = 3 };
 
@@ -36,10 +38,12 @@ class Tailor {
 
  private:
   void place_vertices();
-  void index_ring_faces();
+  void index_faces();
   void match_facets();
   Index face_at(const Triangle& facet) const;
-  Index face_with_steiner_points(const Triangle& facet) const;
+  Index divided_face_at(const Triangle& facet) const;
+  int sides_of(Index vertex, Index face) const;
+  bool is_part(const Triangle& facet, Index face) const;
   void match(Index cell, int k, Index face);
   void flood_stars();
   bool flood(Index vertex, const std::vector<Index>& star);
@@ -67,69 +71,81 @@ std::uint64_t pair_key(Index a, Index b) {
 
 void Tailor::place_vertices() {
   place_.assign(complex_.vertices.size(), Place::elsewhere);
-  input_of_.assign(complex_.vertices.size(), none);
-  std::vector<char> on_rim(in_.mesh.vertices.size(), 0), on_ring(in_.mesh.vertices.size(), 0);
-  for (Index face : in_.ring_faces)
-    for (Index v : in_.mesh.triangles[face]) on_ring[v] = 1;
-  for (Index h : in_.half_edges) {
+  std::vector<char> on_rim(in_.mesh.vertices.size(), 0);
+  for (std::size_t edge = 0; edge < in_.rim_edges; ++edge) {
+    const Index h = in_.half_edges[edge];
     const Triangle& t = in_.mesh.triangles[h / 3];
     on_rim[t[h % 3]] = on_rim[t[(h % 3 + 1) % 3]] = 1;
   }
-  for (Index v = 0; v < in_.initial.size(); ++v) {
-    input_of_[v] = in_.initial[v];
-    place_[v] = on_rim[input_of_[v]] ? Place::rim : on_ring[input_of_[v]] ? Place::ring : Place::elsewhere;
+  for (Index v = 0; v < place_.size(); ++v) {
+    const Index own = complex_.mesh_vertex[v], edge = complex_.on_edge[v];
+    if (own != none)
+      place_[v] = on_rim[own] ? Place::rim : Place::mesh;
+    else if (edge != none)
+      place_[v] = edge < in_.rim_edges ? Place::rim_edge : Place::mesh_edge;
+    else if (complex_.is_new(v))
+      place_[v] = Place::fresh;
   }
-  for (Index v = complex_.initial_points + DelaunayComplex::far_corners; v < place_.size(); ++v)
-    place_[v] = complex_.on_edge[v] != none ? Place::on_rim_edge : Place::fresh;
 }
 
-void Tailor::index_ring_faces() {
-  for (Index face : in_.ring_faces) {
+// Those whose corners are all there.
+void Tailor::index_faces() {
+  std::vector<char> there(in_.mesh.vertices.size(), 0);
+  for (Index v : complex_.mesh_vertex)
+    if (v != none) there[v] = 1;
+  for (Index face = 0; face < in_.mesh.triangles.size(); ++face) {
     const Triangle& t = in_.mesh.triangles[face];
+    if (!there[t[0]] || !there[t[1]] || !there[t[2]]) continue;
     for (int k = 0; k < 3; ++k) faces_[pair_key(t[k], t[(k + 1) % 3])].push_back(face);
   }
 }
 
-// The ring face of which a facet is a part.
+// The face of the mesh of which a facet is a part.
 Index Tailor::face_at(const Triangle& facet) const {
-  bool any_steiner = false;
+  bool divided = false;
   for (Index v : facet) {
-    if (place_[v] == Place::on_rim_edge)
-      any_steiner = true;
-    else if (place_[v] != Place::rim && place_[v] != Place::ring)
+    if (place_[v] == Place::rim_edge || place_[v] == Place::mesh_edge)
+      divided = true;
+    else if (place_[v] != Place::rim && place_[v] != Place::mesh)
       return none;
   }
-  if (any_steiner) return face_with_steiner_points(facet);
-  const auto found = faces_.find(pair_key(input_of_[facet[0]], input_of_[facet[1]]));
+  if (divided) return divided_face_at(facet);
+  const auto found = faces_.find(pair_key(complex_.mesh_vertex[facet[0]], complex_.mesh_vertex[facet[1]]));
   if (found == faces_.end()) return none;
   for (Index face : found->second) {
     const Triangle& t = in_.mesh.triangles[face];
-    if (std::count(t.begin(), t.end(), input_of_[facet[2]])) return face;
+    if (std::count(t.begin(), t.end(), complex_.mesh_vertex[facet[2]])) return face;
   }
   return none;
 }
 
-Index Tailor::face_with_steiner_points(const Triangle& facet) const {
-  Index face = none;
-  for (Index v : facet)
-    if (place_[v] == Place::on_rim_edge) face = in_.half_edges[complex_.on_edge[v]] / 3;
-  const Triangle& t = in_.mesh.triangles[face];
-  // Bit k: on the side from corner k to the next. Three points of one side are no part of the face.
-  int common = 7;
+Index Tailor::divided_face_at(const Triangle& facet) const {
   for (Index v : facet) {
-    int sides = 0;
-    if (place_[v] == Place::on_rim_edge) {
-      const Index h = in_.half_edges[complex_.on_edge[v]];
-      if (h / 3 != face) return none;
-      sides = 1 << h % 3;
-    } else {
-      const auto k = std::find(t.begin(), t.end(), input_of_[v]) - t.begin();
-      if (k == 3) return none;
-      sides = 1 << k | 1 << (k + 2) % 3;
-    }
-    common &= sides;
+    if (complex_.on_edge[v] == none) continue;
+    const Index h = in_.half_edges[complex_.on_edge[v]], other = in_.topology.opposite[h];
+    if (is_part(facet, h / 3)) return h / 3;
+    if (other < in_.topology.opposite.size() && is_part(facet, other / 3)) return other / 3;
+    return none;
   }
-  return common == 0 ? face : none;
+  return none;
+}
+
+// Bit k: on the side from corner k to the next.
+int Tailor::sides_of(Index vertex, Index face) const {
+  const Index edge = complex_.on_edge[vertex];
+  if (edge != none) {
+    const Index h = in_.half_edges[edge], other = in_.topology.opposite[h];
+    return h / 3 == face ? 1 << h % 3 : other / 3 == face ? 1 << other % 3 : 0;
+  }
+  const Triangle& t = in_.mesh.triangles[face];
+  const auto k = std::find(t.begin(), t.end(), complex_.mesh_vertex[vertex]) - t.begin();
+  return k == 3 ? 0 : 1 << k | 1 << (k + 2) % 3;
+}
+
+// Three points on one side are no part of a face.
+bool Tailor::is_part(const Triangle& facet, Index face) const {
+  const int a = sides_of(facet[0], face), b = sides_of(facet[1], face), c = sides_of(facet[2], face);
+  return a && b && c && !(a & b & c);
 }
 
 // The cells at a part of a ring face are on the sides of it that they are on.
@@ -161,7 +177,7 @@ void Tailor::match_facets() {
 // Where all faces round a vertex of the ring are there, every cell at it is on one side of them.
 void Tailor::flood_stars() {
   std::vector<Index> first(complex_.vertices.size() + 1, 0), cells;
-  const auto counts = [&](Index v) { return place_[v] == Place::ring; };
+  const auto counts = [&](Index v) { return place_[v] == Place::mesh || place_[v] == Place::mesh_edge; };
   for (const auto& cell : complex_.cells)
     for (Index v : cell) first[v + 1] += counts(v);
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
@@ -267,8 +283,9 @@ SeparatingSurface Tailor::extract() const {
         if (number[v] == none) {
           number[v] = static_cast<Index>(surface.vertices.size());
           const Index edge = complex_.on_edge[v];
-          surface.vertices.push_back({complex_.vertices[v], place_[v] == Place::rim ? input_of_[v] : none,
-                                      edge == none ? none : in_.half_edges[edge], false});
+          surface.vertices.push_back({complex_.vertices[v],
+                                      place_[v] == Place::rim ? complex_.mesh_vertex[v] : none,
+                                      place_[v] == Place::rim_edge ? in_.half_edges[edge] : none, false});
         }
         v = number[v];
       }
@@ -280,7 +297,7 @@ SeparatingSurface Tailor::extract() const {
 
 SeparatingSurface Tailor::run(const Progress& progress) {
   place_vertices();
-  index_ring_faces();
+  index_faces();
   match_facets();
   progress.check();
   flood_stars();

@@ -17,9 +17,10 @@ struct TailoringInput {
   const TriangleMesh& mesh;
   const MeshTopology& topology;
   const DelaunayComplex& complex;
-  const std::vector<Index>& initial;     ///< the mesh's vertex at each initial point
-  const std::vector<Index>& ring_faces;  ///< the mesh's faces whose corners are among them near the rims
-  const std::vector<Index>& half_edges;  ///< the mesh's boundary half-edge at each protected edge: the rims
+  /// The mesh's half-edge at each protected edge: first the `rim_edges` boundary half-edges of the rims, then
+  /// inner ones.
+  const std::vector<Index>& half_edges;
+  std::size_t rim_edges;
 };
 
 /// What the tailoring came to, for reports and tests.
@@ -29,11 +30,11 @@ struct TailoringFigures {
   std::size_t relabelled = 0;      ///< cells that are not on the side that the function has them on
 };
 
-/// The surface between inside and outside without the input's own part of it. Cells next to a ring face are
-/// on the side on which the face has them, whatever the function says; of the others those are on the other
-/// side than the function has them on for which that makes the surface smaller (a minimum cut). What remains
-/// are the facets with corners on the rims and new ones. Source: the paper, section 3.4. Cost: near-linear in
-/// the cells near the rims.
+/// The surface between inside and outside without the input's own part of it. Cells next to a face of
+/// the input are on the side on which the face has them, whatever the function says; of the others those are
+/// on the other side than the function has them on for which that makes the surface smaller (a minimum cut).
+/// What remains are the facets with corners on the rims and new ones. Source: the paper, section 3.4. Cost:
+/// near-linear in the cells near the rims.
 SeparatingSurface tailor(const TailoringInput& input, TailoringFigures& figures,
                          const Progress& progress = Progress());
 
