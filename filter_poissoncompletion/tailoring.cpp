@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "common/core/graph_cut.h"
+#include "filter_poissoncompletion/surplus_facets.h"
 
 namespace meshcomplete {
 namespace {
@@ -303,7 +304,9 @@ SeparatingSurface Tailor::run(const Progress& progress) {
   flood_stars();
   progress.check();
   cut(progress);
-  return extract();
+  SeparatingSurface surface = extract();
+  figures_.surplus = drop_surplus_facets(surface, in_.mesh, in_.topology);
+  return surface;
 }
 
 }  // namespace
