@@ -24,6 +24,10 @@ namespace {
 // balls of the first facets at the rims, so that these see what is behind them.
 constexpr double near_rims = 2.5;
 
+// Up to which distance from the rims, in radii, the cushion grows: beyond there may be other sheets that face
+// the same way.
+constexpr double most_growth = 2;
+
 std::string describe(Sheet::Flaw flaw) {
   switch (flaw) {
     case Sheet::Flaw::none:
@@ -90,12 +94,11 @@ EdgeLengthField Run::make_field() const {
 
 Cushion Run::make_cushion() const {
   if (options_.cushion_radius) return Cushion(input_.blocks(), *options_.cushion_radius);
-  const auto radius = [this](const Vector3& at) {
+  return Cushion(input_.blocks(), [this](const Vector3& at, bool alike) {
     const double at_rims = options_.cushion * field_.at(at);
-    const double beyond = field_.distance(at) - options_.rings * at_rims;
-    return std::isfinite(beyond) && beyond > 0 ? at_rims + options_.cushion_growth * beyond : at_rims;
-  };
-  return Cushion(input_.blocks(), radius, std::numeric_limits<double>::infinity());
+    if (!alike) return at_rims;
+    return at_rims + options_.cushion_growth * std::min(field_.distance(at), most_growth * at_rims);
+  });
 }
 
 std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Progress& progress) {

@@ -28,8 +28,9 @@ struct RefinedCompletionOptions {
   double cushion = 1.05;
   /// The radius of the cushion (mesh units, positive) everywhere instead.
   std::optional<double> cushion_radius;
-  /// By how much the cushion grows with the distance from the rims: the function may be less exact there.
-  double cushion_growth = 0.25;
+  /// By how much the cushion grows with the distance from the rims, up to two radii away from them, for
+  /// surfaces that face as the mesh does: the function may be less exact than at the rims.
+  double cushion_growth = 1;
   /// Facets with a smaller angle are refined (degrees, 0 to 30).
   double smallest_angle = 27;
   /// What is done to the patches after they were cut out. No fairing: the function gives the shape.

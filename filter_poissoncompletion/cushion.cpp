@@ -1,21 +1,27 @@
 #include "filter_poissoncompletion/cushion.h"
 
+#include <Eigen/Geometry>
+#include <limits>
 #include <utility>
 
 #include "common/core/closest_point.h"
 
 namespace meshcomplete {
+namespace {
 
-Cushion::Cushion(const TriangleBlocks& mesh, Radius radius, double largest)
-    : mesh_(mesh), radius_(std::move(radius)), largest_(largest) {}
+// Surfaces that face as the mesh does to within some 60 degrees are taken for the same sheet.
+constexpr double least_cosine = 0.5;
+
+}  // namespace
+
+Cushion::Cushion(const TriangleBlocks& mesh, Radius radius) : mesh_(mesh), radius_(std::move(radius)) {}
 
 Cushion::Cushion(const TriangleBlocks& mesh, double radius)
-    : Cushion(
-          mesh, [radius](const Vector3&) { return radius; }, radius) {}
+    : Cushion(mesh, [radius](const Vector3&, bool) { return radius; }) {}
 
 std::optional<Cushion::Nearest> Cushion::nearest(const Vector3& point) const {
   const TriangleMesh& mesh = mesh_.mesh();
-  double best = largest_ * largest_;
+  double best = std::numeric_limits<double>::infinity();
   std::optional<Nearest> found;
   const auto offer = [&](Index triangle) {
     if (squared_distance(mesh_.triangle_box(triangle), point) > best) return true;
@@ -34,9 +40,15 @@ std::optional<Cushion::Nearest> Cushion::nearest(const Vector3& point) const {
   return found;
 }
 
-std::optional<Cushion::Nearest> Cushion::within(const Vector3& point) const {
+std::optional<Cushion::Nearest> Cushion::within(const Vector3& point, const Vector3& outwards) const {
   std::optional<Nearest> near = nearest(point);
-  if (near && !(near->distance < radius_(near->position))) near.reset();
+  if (!near) return near;
+  const TriangleMesh& mesh = mesh_.mesh();
+  const Triangle& t = mesh.triangles[near->triangle];
+  const Vector3& p = mesh.vertices[t[0]];
+  const Vector3 normal = (mesh.vertices[t[1]] - p).cross(mesh.vertices[t[2]] - p);
+  const bool alike = normal.dot(outwards) > least_cosine * normal.norm() * outwards.norm();
+  if (!(near->distance < radius_(near->position, alike))) near.reset();
   return near;
 }
 

@@ -9,13 +9,14 @@
 
 namespace meshcomplete {
 
-/// All points nearer to the mesh than a radius that may change over the mesh. Source: the paper, section 2.2:
-/// the cushion P_r(M). Refers to the blocks, which must outlive it. Immutable; safe to ask from many threads
-/// if `radius` is.
+/// All points nearer to the mesh than a radius that may change over the mesh, and with the side from which a
+/// surface comes near it. Source: the paper, section 2.2: the cushion P_r(M). Refers to the blocks, which
+/// must outlive it. Immutable; safe to ask from many threads if `radius` is.
 class Cushion {
  public:
-  /// The radius round a point of the mesh (mesh units, at least 0).
-  using Radius = std::function<double(const Vector3& on_mesh)>;
+  /// The radius round a point of the mesh (mesh units, at least 0). `alike`: for surfaces that face as the
+  /// mesh does there, which are the same sheet, rather than the other side of a wall.
+  using Radius = std::function<double(const Vector3& on_mesh, bool alike)>;
 
   /// What of the mesh is nearest to a point; of several triangles the one with the lowest number.
   struct Nearest {
@@ -24,24 +25,22 @@ class Cushion {
     double distance;
   };
 
-  /// `largest` (mesh units) bounds the radius: greater values of `radius` count as `largest`.
-  Cushion(const TriangleBlocks& mesh, Radius radius, double largest);
+  Cushion(const TriangleBlocks& mesh, Radius radius);
   /// The same radius everywhere.
   Cushion(const TriangleBlocks& mesh, double radius);
 
-  /// The nearest point of the mesh when it is nearer than `largest`. Cost: O(log faces + triangles whose
-  /// boxes are nearer than what was found first).
+  /// Nothing for a mesh without triangles. Cost: O(log faces + triangles whose boxes are nearer than what was
+  /// found first).
   std::optional<Nearest> nearest(const Vector3& point) const;
 
   /// The nearest point of the mesh when the radius there is greater than its distance, so that the point is
-  /// in the cushion. Cost: as `nearest`.
-  std::optional<Nearest> within(const Vector3& point) const;
-  bool contains(const Vector3& point) const { return within(point).has_value(); }
+  /// in the cushion. `outwards` is the direction in which the surface has its outside there. Cost: as
+  /// `nearest`.
+  std::optional<Nearest> within(const Vector3& point, const Vector3& outwards) const;
 
  private:
   const TriangleBlocks& mesh_;
   Radius radius_;
-  double largest_;
 };
 
 }  // namespace meshcomplete

@@ -125,6 +125,7 @@ class Refiner {
   void queue_facets_of(const CellHandle& cell);
   void consider(const CellHandle& cell, int corner);
   double badness(const CellHandle& cell, int corner) const;
+  Vector3 outwards(const CellHandle& cell, int corner) const;
   std::optional<Vector3> surface_centre(const CellHandle& cell, int corner) const;
   void refine_queue();
   void refine(const QueuedFacet& facet);
@@ -374,14 +375,7 @@ std::optional<Vector3> Refiner::surface_centre(const CellHandle& cell, int corne
   if (out.in_box) return crossing(function_, in.centre, out.centre, in.value, out.value, tolerance);
   // The outer centre is far away, or there is none: go as far as the box does.
   Vector3 way = out.centre - in.centre;
-  const CellHandle inner = turned ? other : cell, outer = turned ? cell : other;
-  if (triangulation_.is_infinite(outer) || !way.allFinite()) {
-    const int across = inner->index(outer);
-    Vector3 p[3];
-    for (int k = 0; k < 3; ++k)
-      p[k] = vector_of(inner->vertex(Triangulation::vertex_triple_index(across, k))->point());
-    way = (p[1] - p[0]).cross(p[2] - p[0]);
-  }
+  if (triangulation_.is_infinite(turned ? cell : other) || !way.allFinite()) way = outwards(cell, corner);
   double share = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
     if (way[k] == 0) continue;
@@ -392,13 +386,23 @@ std::optional<Vector3> Refiner::surface_centre(const CellHandle& cell, int corne
   return crossing(function_, in.centre, in.centre + share * way, tolerance);
 }
 
+// The normal of a facet that points out of the surface.
+Vector3 Refiner::outwards(const CellHandle& cell, int corner) const {
+  Vector3 p[3];
+  for (int k = 0; k < 3; ++k)
+    p[k] = vector_of(cell->vertex(Triangulation::vertex_triple_index(corner, k))->point());
+  const Vector3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
+  return inside(cell) ? Vector3(-normal) : normal;  // it points to the cell
+}
+
 void Refiner::refine(const QueuedFacet& facet) {
   const CellHandle other = facet.cell->neighbor(facet.corner);
   const std::optional<Vector3> at = surface_centre(facet.cell, facet.corner);
   if (!at) return;
   const Vector3 stored = as_stored(*at);
   if (options_.around) {
-    const std::optional<Cushion::Nearest> nearest = options_.around->cushion.within(stored);
+    const std::optional<Cushion::Nearest> nearest =
+        options_.around->cushion.within(stored, outwards(facet.cell, facet.corner));
     if (nearest) return insert_mesh_vertex(*nearest, stored, facet.cell, other);
   }
   insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none);
