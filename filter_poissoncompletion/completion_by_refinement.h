@@ -33,8 +33,8 @@ struct RefinedCompletionOptions {
   double cushion_growth = 1;
   /// Facets with a smaller angle are refined (degrees, 0 to 30).
   double smallest_angle = 27;
-  /// What is done to the patches after they were cut out. No fairing: the function gives the shape.
-  FinishingOptions finishing = {true, std::nullopt, std::nullopt, "as cut out"};
+  /// What is done to the patches after they were cut out. Without fairing they keep the function's shape.
+  FinishingOptions finishing = {true, SurfaceEnergy::normal_variation, std::nullopt, "as cut out"};
 };
 
 struct RefinedCompletionFigures {

@@ -29,7 +29,7 @@ struct ScreenedPoissonOptions {
   PoissonBoundary boundary = PoissonBoundary::dirichlet;
   /// Weight of the distance from the samples, as in Kazhdan and Hoppe: over the side of the finest cubes.
   double screening = 16;
-  double coarse_screening = 16;  ///< factor by which it is stronger in all levels but the finest
+  double coarse_screening = 64;  ///< factor by which it is stronger in all levels but the finest
   int iterations = 30;           ///< of conjugate gradients in each level, at most
   double tolerance = 1e-4;       ///< of the residual in each level, relative to its right-hand side
 };

@@ -1,0 +1,116 @@
+#include "filter_poissoncompletion/poisson_completion.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/hole_targets.h"
+#include "common/core/mesh_topology.h"
+#include "common/core/patch_check.h"
+#include "common/core/piece_results.h"
+#include "common/core/rim.h"
+#include "common/core/stage_clock.h"
+#include "filter_poissoncompletion/edge_length_field.h"
+#include "filter_poissoncompletion/wall_thickness.h"
+
+namespace meshcomplete {
+namespace {
+
+void require(bool condition, const char* message) {
+  if (!condition) throw CompletionError("reading the parameters", message);
+}
+
+bool positive(double x) { return std::isfinite(x) && x > 0; }
+
+// Cubes of the octree from one side of a wall to the other: with fewer its two sides run into one.
+constexpr double cubes_in_wall = 3;
+// Thinner walls than this part of an edge are taken for flaws of the scan.
+constexpr double thinnest_wall = 0.25;
+
+// How fine the octree has to be at the rims: as their edges, and finer in thin walls.
+EdgeLengthField resolution(const TriangleMesh& mesh, const MeshTopology& topology,
+                           const std::vector<BoundaryLoop>& loops, const std::vector<HoleReport>& holes,
+                           const InputNeighbourhood& input) {
+  std::vector<RimSample> samples;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!is_targeted(holes[i]) && !may_join(loops[i], holes[i])) continue;
+    const Rim rim = collect_rim(mesh, topology, loops[i]);
+    std::vector<double> lengths = rim.edge_length;
+    for (std::size_t k = 0; k < loops[i].faces.size(); ++k) {
+      const Triangle& t = mesh.triangles[loops[i].faces[k]];
+      const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+      const Vector3 normal = (b - a).cross(c - a).normalized();
+      const auto wall = wall_thickness(input.blocks(), (a + b + c) / 3, normal, thinnest_wall * lengths[k],
+                                       cubes_in_wall * lengths[k]);
+      if (wall) lengths[k] = *wall / cubes_in_wall;
+    }
+    const std::vector<RimSample> more = smoothed_samples(rim.positions, lengths);
+    samples.insert(samples.end(), more.begin(), more.end());
+  }
+  return EdgeLengthField(std::move(samples));
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> named(const PoissonCompletionFigures& figures) {
+  const auto number = [](std::size_t count) { return static_cast<double>(count); };
+  const PoissonOracleFigures& oracle = figures.oracle;
+  const RefinedCompletionFigures& refinement = figures.refinement;
+  return {{"samples", number(oracle.samples)},
+          {"octree cubes", number(oracle.cubes)},
+          {"octree depth", oracle.depth},
+          {"initial points", number(refinement.initial_points)},
+          {"Delaunay vertices", number(refinement.points)},
+          {"Delaunay cells", number(refinement.cells)}};
+}
+
+void check_options(const PoissonCompletionOptions& o) {
+  const ScreenedPoissonOptions& poisson = o.oracle.poisson;
+  require(poisson.min_depth >= 1 && poisson.min_depth <= 8, "MinDepth must lie between 1 and 8.");
+  require(!o.oracle.max_depth || (*o.oracle.max_depth >= poisson.min_depth && *o.oracle.max_depth <= 16),
+          "MaxDepth must lie between MinDepth and 16, or be 0 for as deep as the rims need.");
+  require(std::isfinite(o.oracle.scale) && o.oracle.scale > 1 && o.oracle.scale <= 10,
+          "Scale must lie above 1 and be at most 10.");
+  require(positive(o.oracle.density), "Samples must be positive.");
+  require(std::isfinite(poisson.screening) && poisson.screening >= 0, "Screening must not be negative.");
+  require(o.refinement.rings >= 1 && o.refinement.rings <= 100, "Rings must lie between 1 and 100.");
+  require(!o.refinement.edge_length || positive(*o.refinement.edge_length),
+          "EdgeLength must be positive, or 0 for that of the mesh round the hole.");
+  require(!o.refinement.cushion_radius || positive(*o.refinement.cushion_radius),
+          "CushionRadius must be positive, or 0 for one that goes with the edge length.");
+}
+
+PoissonCompletionResult complete_by_poisson(const TriangleMesh& mesh, const MeshSelection& selection,
+                                            const PoissonCompletionOptions& options,
+                                            const Progress& progress) {
+  check_options(options);
+  PoissonCompletionResult result;
+  CompletionReport report;
+  StageClock clock(report);
+  const MeshTopology topology = build_topology(mesh, progress.part(0, 0.05, "finding the boundary"));
+  const std::vector<BoundaryLoop> loops =
+      trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
+  report.holes = select_holes(mesh, loops, selection, options.holes);
+  target_islands(loops, report.holes);
+  clock.end_of("finding the holes");
+  if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
+    const InputNeighbourhood input(mesh);
+    const EdgeLengthField cubes = resolution(mesh, topology, loops, report.holes, input);
+    PoissonOracle oracle = make_oracle(mesh, options.guides, cubes, options.oracle,
+                                       progress.part(0.1, 0.5, "building the oracle"));
+    clock.end_of("building the oracle");
+    RefinedCompletion refined =
+        complete_by_refinement(mesh, topology, loops, input, oracle.field, options.refinement,
+                               std::move(report), progress.part(0.5, 1, "refining the surface"));
+    result.completion = std::move(refined.completion);
+    result.figures = {std::move(oracle.figures), refined.figures};
+  } else {
+    result.completion = gather_pieces(mesh, {}, std::move(report));
+  }
+  result.completion.report.figures = named(result.figures);
+  progress.update(1);
+  return result;
+}
+
+}  // namespace meshcomplete
