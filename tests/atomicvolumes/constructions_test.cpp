@@ -43,6 +43,12 @@ std::vector<std::vector<Triangle>> components(const std::vector<Triangle>& trian
   return list;
 }
 
+/// Of a patch that closes all holes.
+void expect_passed(const TriangleMesh& mesh, const Patch& patch) {
+  const PatchCheck check = test::check(mesh, patch, test::loops_of(mesh));
+  EXPECT_TRUE(check.passed()) << describe(check.defect);
+}
+
 /// Closes all holes and expects that nothing is wrong with what comes out: the patch passes the check, every
 /// hole is closed, mesh and patch are a closed manifold.
 Outcome complete(const TriangleMesh& mesh, const AtomicVolumesOptions& options = {}) {
@@ -53,10 +59,7 @@ Outcome complete(const TriangleMesh& mesh, const AtomicVolumesOptions& options =
     outcome.loops_of_holes.push_back(hole.loops.size());
   }
   std::sort(outcome.loops_of_holes.begin(), outcome.loops_of_holes.end());
-  const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
-  const PatchCheck check =
-      check_patch(InputNeighbourhood(mesh), result.completion.patch, test::pointers(loops));
-  EXPECT_TRUE(check.passed()) << describe(check.defect);
+  expect_passed(mesh, result.completion.patch);
   const TriangleMesh whole = test::with_patch(mesh, result.completion.patch);
   for (const std::vector<Triangle>& part : components(whole.triangles)) {
     const test::Shape shape = test::shape_of(part);
@@ -74,13 +77,17 @@ using Genera = std::vector<long>;
 using Loops = std::vector<std::size_t>;
 constexpr std::uint64_t seeds[] = {1, 2, 3};
 
+AtomicVolumesOptions with_seed(std::uint64_t seed) {
+  AtomicVolumesOptions options;
+  options.seed = seed;
+  return options;
+}
+
 // Figure 1: the pipe's ends are closed by themselves, and the two openings of the sphere by one tunnel round
 // the pipe.
 TEST(Constructions, PiercedSphere) {
   for (std::uint64_t seed : seeds) {
-    AtomicVolumesOptions options;
-    options.seed = seed;
-    const Outcome outcome = complete(test::pierced_sphere(), options);
+    const Outcome outcome = complete(test::pierced_sphere(), with_seed(seed));
     EXPECT_EQ(outcome.genera, (Genera{0, 1})) << "pipe and sphere";
     EXPECT_EQ(outcome.loops_of_holes, (Loops{1, 1, 2}));
   }
@@ -89,8 +96,7 @@ TEST(Constructions, PiercedSphere) {
 // Figure 2: two discs, or with points outside a ring.
 TEST(Constructions, OuterHalfOfATorus) {
   for (std::uint64_t seed : seeds) {
-    AtomicVolumesOptions options;
-    options.seed = seed;
+    AtomicVolumesOptions options = with_seed(seed);
     const Outcome discs = complete(test::outer_half_of_torus(), options);
     EXPECT_EQ(discs.genera, Genera{0});
     EXPECT_EQ(discs.loops_of_holes, (Loops{1, 1}));
@@ -111,8 +117,7 @@ TEST(Constructions, SpiralTorus) {
 // Figure 11: a handle, and none with points outside in the gap.
 TEST(Constructions, LumpsWithAndWithoutAHandle) {
   for (std::uint64_t seed : seeds) {
-    AtomicVolumesOptions options;
-    options.seed = seed;
+    AtomicVolumesOptions options = with_seed(seed);
     const Outcome handle = complete(test::lumps(), options);
     EXPECT_EQ(handle.genera, Genera{1});
     EXPECT_EQ(handle.loops_of_holes, Loops{2});
@@ -130,9 +135,8 @@ TEST(Constructions, TheWeightDecidesHowWideAGapIsBridged) {
   const auto bridged = [&](CutWeight weight) {
     int count = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-      AtomicVolumesOptions options;
+      AtomicVolumesOptions options = with_seed(seed);
       options.weight = weight;
-      options.seed = seed;
       options.shifts = 1;
       options.remesh = false;
       options.fairing.reset();
@@ -177,10 +181,7 @@ TEST(Constructions, AFoldAtARim) {
     const CompletionReport& report = result.completion.report;
     ASSERT_EQ(report.holes.size(), 1u);
     EXPECT_EQ(report.holes[0].outcome, HoleOutcome::closed) << report.holes[0].reason;
-    const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
-    const PatchCheck check =
-        check_patch(InputNeighbourhood(mesh), result.completion.patch, test::pointers(loops));
-    EXPECT_TRUE(check.passed()) << describe(check.defect);
+    expect_passed(mesh, result.completion.patch);
     const test::Shape shape = test::shape_of(test::with_patch(mesh, result.completion.patch).triangles);
     EXPECT_TRUE(shape.manifold);
     EXPECT_EQ(shape.euler, 2);
@@ -189,6 +190,43 @@ TEST(Constructions, AFoldAtARim) {
   }
   EXPECT_GT(done, 5);
   EXPECT_EQ(by_others, 2);
+}
+
+// The number of faces bridges the gap between a hole that was selected and one that was not; the least area
+// does not. With the last two seeds the second octree after that bridges it by any weight, so that the first
+// one has to be cut by the least area already.
+TEST(Constructions, OneOfTwoHolesThatOnePatchWouldClose) {
+  const TriangleMesh mesh = test::two_caps(2, 0.5);
+  MeshSelection upper;
+  for (const Vector3& p : mesh.vertices) upper.vertices.push_back(p.z() > 0);
+  for (std::uint64_t seed : {1, 2, 17, 37}) {
+    AtomicVolumesOptions options = with_seed(seed);
+    options.holes.selected_only = true;
+    options.weight = CutWeight::unit;
+    options.shifts = 1;
+    options.remesh = false;
+    options.fairing.reset();
+    const CompletionReport report = fill_by_atomic_volumes(mesh, upper, options).completion.report;
+    EXPECT_TRUE(tried_others(report)) << "one patch would close both";
+    EXPECT_EQ(report.count(HoleOutcome::closed), 1u) << "seed " << seed;
+    EXPECT_EQ(report.count(HoleOutcome::skipped), 1u);
+  }
+}
+
+// A vertex beside one rim is pushed through a face there, so that space round this rim cannot be divided. The
+// other rim has no part in that once its patch no longer bridges the gap.
+TEST(Constructions, AHoleWhosePatchWouldReachOneThatCannotBeClosed) {
+  TriangleMesh mesh = test::two_caps(2, 0.5);
+  constexpr Index next_to_rim = 8, beside = 5;
+  mesh.vertices[next_to_rim] = as_stored(1.05 * test::middle_of(test::icosphere(2), beside));
+  AtomicVolumesOptions options;
+  options.shifts = 1;
+  const CompletionReport report = fill_by_atomic_volumes(mesh, {}, options).completion.report;
+  EXPECT_TRUE(tried_others(report));
+  EXPECT_EQ(report.count(HoleOutcome::closed), 1u);
+  for (const HoleReport& hole : report.holes)
+    if (hole.outcome != HoleOutcome::closed)
+      EXPECT_NE(hole.reason.find("could not be divided"), std::string::npos) << hole.reason;
 }
 
 /// Two spheres, each with a hole, that touch in a vertex of both rims: two vertices at one position.
@@ -209,9 +247,7 @@ TEST(Constructions, RimsThatTouchInAPosition) {
   ASSERT_EQ(before.duplicated_vertices, 1u);
   ASSERT_EQ(before.self_intersecting_pairs, 0u);
   for (std::uint64_t seed : seeds) {
-    AtomicVolumesOptions options;
-    options.seed = seed;
-    const Outcome outcome = complete(mesh, options);
+    const Outcome outcome = complete(mesh, with_seed(seed));
     // Two lids or a band.
     EXPECT_EQ(outcome.genera, Genera(outcome.loops_of_holes.size(), 0));
     EXPECT_EQ(std::accumulate(outcome.loops_of_holes.begin(), outcome.loops_of_holes.end(), 0u), 2u);
@@ -285,8 +321,7 @@ TEST(Constructions, ARimOfThreeEdgesInAFoldGetsItsTriangle) {
   EXPECT_EQ(hole.outcome, HoleOutcome::closed) << hole.reason;
   EXPECT_EQ(hole.route, "one triangle");
   ASSERT_EQ(result.completion.patch.triangles.size(), 1u);
-  const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
-  EXPECT_TRUE(check_patch(InputNeighbourhood(mesh), result.completion.patch, test::pointers(loops)).passed());
+  expect_passed(mesh, result.completion.patch);
 }
 
 // Far from the origin floats are coarse: cubes, and the edges of patches between them, come out finer than
@@ -296,13 +331,26 @@ TEST(Constructions, HolesFarFromTheOrigin) {
   for (Vector3& p : mesh.vertices) p = as_stored(p + Vector3(3000, -5000, 4000));
   int moved = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    AtomicVolumesOptions options;
-    options.seed = seed;
+    AtomicVolumesOptions options = with_seed(seed);
     options.shifts = 1;
     EXPECT_EQ(complete(mesh, options).genera, Genera{0}) << "seed " << seed;
     moved += fill_by_atomic_volumes(mesh, {}, options).figures.restarts;
   }
   EXPECT_GT(moved, 0) << "some octrees are too fine";
+}
+
+// Further away the edges of cubes themselves are as short as the steps between floats, and nothing comes
+// after the cubes that would make them longer.
+TEST(Constructions, SurfacesOfCubesVeryFarFromTheOrigin) {
+  TriangleMesh mesh = test::sphere_with_holes(1);
+  for (Vector3& p : mesh.vertices) p = as_stored(p + 100000 * Vector3(0.6, -1, 0.8));
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    AtomicVolumesOptions options = with_seed(seed);
+    options.shifts = 1;
+    options.remesh = false;
+    options.fairing.reset();
+    EXPECT_EQ(complete(mesh, options).genera, Genera{0}) << "seed " << seed;
+  }
 }
 
 }  // namespace

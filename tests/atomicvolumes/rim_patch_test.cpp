@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <set>
@@ -91,28 +92,65 @@ TEST(RimPatch, KnowsTheRimsOfTheSheet) {
   EXPECT_LT(gone_in_all, 50u) << "few are";
 }
 
-// A triangle more between two Steiner points of one rim edge and a third one: it has no area, and no inner
-// corner that could be moved.
-TEST(RimPatch, EarsOnARimEdgeAreTakenOff) {
-  const PlacedMesh placed(test::sphere_with_hole(2, 0.6), 1);
-  std::vector<Sheet> sheets = sheets_of(placed);
-  const auto at_rim = [](const Sheet& one) { return !one.closes.empty(); };
-  Sheet sheet = *std::find_if(sheets.begin(), sheets.end(), at_rim);
-  const std::size_t plain = make_rim_patch(placed.mesh, placed.topology, sheet).mesh.triangle_count();
-  std::size_t added = 0;
-  for (const auto& [edge, times] : test::boundary_of(sheet.triangles)) {
-    const Index from = times > 0 ? edge.first : edge.second, to = times > 0 ? edge.second : edge.first;
-    SheetVertex tip = sheet.vertices[from];
-    if (tip.rim_edge == SheetVertex::none || sheet.vertices[to].rim_edge != tip.rim_edge) continue;
-    tip.position = 0.5 * (tip.position + sheet.vertices[to].position);
-    sheet.triangles.push_back({from, static_cast<Index>(sheet.vertices.size()), to});
-    sheet.vertices.push_back(tip);
-    ++added;
+/// A sheet with something more between every two Steiner points of one rim edge that are next to each other.
+class RimPatchWithMore : public ::testing::Test {
+ protected:
+  RimPatchWithMore() {
+    for (const Sheet& one : sheets_of(placed_))
+      if (!one.closes.empty()) sheet_ = one;
+    plain_ = rim_patch().mesh.triangle_count();
   }
-  ASSERT_GT(added, 3u);
-  const RimPatch patch = make_rim_patch(placed.mesh, placed.topology, sheet);
+
+  RimPatch rim_patch() const { return make_rim_patch(placed_.mesh, placed_.topology, sheet_); }
+
+  /// Calls `add` with the two points and a new one in the middle between them.
+  template <class Add>
+  void add_everywhere(Add add) {
+    std::size_t places = 0;
+    for (const auto& [edge, times] : test::boundary_of(sheet_.triangles)) {
+      const Index from = times > 0 ? edge.first : edge.second, to = times > 0 ? edge.second : edge.first;
+      SheetVertex tip = sheet_.vertices[from];
+      if (tip.rim_edge == SheetVertex::none || sheet_.vertices[to].rim_edge != tip.rim_edge) continue;
+      tip.position = 0.5 * (tip.position + sheet_.vertices[to].position);
+      const Index middle = static_cast<Index>(sheet_.vertices.size());
+      sheet_.vertices.push_back(tip);
+      add(from, middle, to);
+      ++places;
+    }
+    ASSERT_GT(places, 3u);
+  }
+
+  const PlacedMesh placed_{test::sphere_with_hole(2, 0.6), 1};
+  Sheet sheet_;
+  std::size_t plain_;  // triangles of the patch without more
+};
+
+// A triangle has no area there, and no inner corner that could be moved.
+TEST_F(RimPatchWithMore, EarsOnARimEdgeAreTakenOff) {
+  add_everywhere([&](Index from, Index middle, Index to) { sheet_.triangles.push_back({from, middle, to}); });
+  const RimPatch patch = rim_patch();
   EXPECT_EQ(ears(patch.mesh), 0u);
-  EXPECT_EQ(patch.mesh.triangle_count(), plain);
+  EXPECT_EQ(patch.mesh.triangle_count(), plain_);
+}
+
+// Three triangles and a corner beside the edge: what they are cut off by would lie on the mesh's own edge.
+TEST_F(RimPatchWithMore, PocketsOnARimEdgeAreTakenOff) {
+  add_everywhere([&](Index from, Index middle, Index to) {
+    const Vector3 along = sheet_.vertices[to].position - sheet_.vertices[from].position;
+    SheetVertex aside;
+    aside.position = sheet_.vertices[middle].position + 0.1 * along.norm() * along.unitOrthogonal();
+    const Index corner = static_cast<Index>(sheet_.vertices.size());
+    sheet_.vertices.push_back(aside);
+    sheet_.triangles.push_back({from, middle, corner});
+    sheet_.triangles.push_back({middle, to, corner});
+    sheet_.triangles.push_back({to, from, corner});
+  });
+  RimPatch patch = rim_patch();
+  EXPECT_EQ(patch.mesh.triangle_count(), plain_);
+  ASSERT_EQ(remove_steiner_points(patch, placed_.neighbourhood, {}), 0u);
+  const Patch result = as_patch(patch.mesh, patch.rim_vertices, placed_.mesh);
+  const PatchCheck check = check_patch(placed_.neighbourhood, result, test::pointers(patch.loops));
+  EXPECT_TRUE(check.passed()) << describe(check.defect);
 }
 
 /// What is left of the holes when all sheets are rim patches without Steiner points: nothing.

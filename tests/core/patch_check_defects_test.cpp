@@ -15,14 +15,11 @@
 namespace meshcomplete {
 namespace {
 
+using test::check;
 using test::corners_of;
 using test::fan_patch;
 using test::loops_of;
 using test::pointers;
-
-PatchCheck check(const TriangleMesh& mesh, const Patch& patch, const std::vector<BoundaryLoop>& loops) {
-  return check_patch(InputNeighbourhood(mesh), patch, pointers(loops));
-}
 
 std::vector<Index> sorted(const std::set<Index>& set) { return {set.begin(), set.end()}; }
 
@@ -32,7 +29,7 @@ class PatchDefects : public ::testing::Test {
       : mesh_(test::sphere_with_hole(2, 0.8)), loops_(loops_of(mesh_)), patch_(fan_patch(mesh_, loops_[0])) {}
 
   Index apex() const { return patch_.input_vertices; }
-  PatchCheck check() const { return meshcomplete::check(mesh_, patch_, loops_); }
+  PatchCheck check() const { return test::check(mesh_, patch_, loops_); }
 
   TriangleMesh mesh_;
   std::vector<BoundaryLoop> loops_;

@@ -19,6 +19,7 @@
 namespace meshcomplete {
 namespace {
 
+using test::check;
 using test::corners_of;
 using test::fan_patch;
 using test::loops_of;
@@ -30,10 +31,6 @@ Patch fans(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops) {
   patch.input_vertices = static_cast<Index>(mesh.vertices.size());
   for (const BoundaryLoop& loop : loops) append(patch, fan_patch(mesh, loop));
   return patch;
-}
-
-PatchCheck check(const TriangleMesh& mesh, const Patch& patch, const std::vector<BoundaryLoop>& loops) {
-  return check_patch(InputNeighbourhood(mesh), patch, pointers(loops));
 }
 
 double uniform(std::mt19937& random) { return random() * (1.0 / 4294967296.0); }

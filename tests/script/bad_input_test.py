@@ -6,12 +6,8 @@ import unittest
 import mesh_files
 from meshlab import MeshLabTest, step
 
+
 class BadInput(MeshLabTest):
-    filter = "Close Holes: Curve Unfolding"
-
-    def close(self, mesh, **values):
-        return super().close(mesh, name=self.filter, **values)
-
     def mesh(self, vertices, faces, name="bad.ply"):
         path = self.folder / name
         mesh_files.write_ply(path, vertices, faces)

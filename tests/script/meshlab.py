@@ -96,6 +96,7 @@ class Run:
 
 class MeshLabTest(unittest.TestCase):
     """Gives every test a folder of its own (with a space in its name) and runs meshlabserver in it."""
+    filter = "Close Holes: Curve Unfolding"
 
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="mesh complete ")
@@ -118,8 +119,14 @@ class MeshLabTest(unittest.TestCase):
         text = log.read_text(errors="replace") if log.exists() else ""
         return Run(code, text, console, out)
 
-    def close(self, mesh, attributes=(), name="Close Holes: Curve Unfolding", **values):
-        return self.server(mesh, [step(name, **values)], attributes)
+    def close(self, mesh, attributes=(), **values):
+        return self.server(mesh, [step(self.filter, **values)], attributes)
+
+    def band(self, **arguments):
+        """A file with a band, which has two holes."""
+        path = self.folder / "band.ply"
+        mesh_files.write_ply(path, *mesh_files.band(**arguments))
+        return path
 
     def untouched(self, mesh, attributes=()):
         """The mesh as MeshLab itself writes it when no filter has run."""
@@ -132,6 +139,15 @@ class MeshLabTest(unittest.TestCase):
         after = mesh_files.Ply(run.output)
         self.assertIsNone(mesh_files.difference(before, after), run)
         return after
+
+    def assert_closes_the_band(self):
+        mesh = self.band()
+        before = self.untouched(mesh)
+        run = self.close(mesh)
+        after = self.assert_kept(before, run)
+        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+        self.assertIn("Closed 2 of 2 holes.", run.log)
+        return before, after, run
 
     def assert_refused(self, run, *phrases):
         """The filter failed with this message: no crash, and nothing was written."""

@@ -10,18 +10,8 @@ ELEPHANT = SOURCE / ".cache/data/elephant-with-holes.off"
 
 
 class CloseHoles(MeshLabTest):
-    def band(self, **arguments):
-        path = self.folder / "band.ply"
-        mesh_files.write_ply(path, *mesh_files.band(**arguments))
-        return path
-
     def test_closes_both_holes(self):
-        mesh = self.band()
-        before = self.untouched(mesh)
-        run = self.close(mesh)
-        after = self.assert_kept(before, run)
-        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
-        self.assertIn("Closed 2 of 2 holes.", run.log)
+        before, after, _ = self.assert_closes_the_band()
         self.assertGreater(len(after.positions), len(before.positions), "patches are refined")
 
     def test_keeps_colours_quality_and_normals(self):
@@ -110,21 +100,10 @@ class CloseHoles(MeshLabTest):
 
 
 class AtomicVolumes(MeshLabTest):
-    def band(self):
-        path = self.folder / "band.ply"
-        mesh_files.write_ply(path, *mesh_files.band())
-        return path
-
-    def close(self, mesh, **values):
-        return self.server(mesh, [step("Close Holes: Atomic Volumes", **values)])
+    filter = "Close Holes: Atomic Volumes"
 
     def test_closes_both_holes(self):
-        mesh = self.band()
-        before = self.untouched(mesh)
-        run = self.close(mesh)
-        after = self.assert_kept(before, run)
-        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
-        self.assertIn("Closed 2 of 2 holes.", run.log)
+        _, _, run = self.assert_closes_the_band()
         self.assertRegex(run.log, r"Figures: leaves \d+, .*nodes \d+, .*depth \d+")
 
     def test_layers_of_points(self):
@@ -195,9 +174,7 @@ class CheckCompletion(MeshLabTest):
         self.assertRegex(log, r"(?i)intersect[^\n]*[1-9]|[1-9][^\n]*intersect")
 
     def test_after_closing_nothing_is_open(self):
-        path = self.folder / "band.ply"
-        mesh_files.write_ply(path, *mesh_files.band())
-        run = self.server(path, [step("Close Holes: Curve Unfolding"), step("Check Completion")])
+        run = self.server(self.band(), [step("Close Holes: Curve Unfolding"), step("Check Completion")])
         self.assertEqual(run.code, 0, run)
         self.assertIn("Boundary edges: 0", run.log)
 

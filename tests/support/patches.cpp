@@ -18,6 +18,10 @@ std::vector<const BoundaryLoop*> pointers(const std::vector<BoundaryLoop>& loops
   return result;
 }
 
+PatchCheck check(const TriangleMesh& mesh, const Patch& patch, const std::vector<BoundaryLoop>& loops) {
+  return check_patch(InputNeighbourhood(mesh), patch, pointers(loops));
+}
+
 Patch fan_patch(const TriangleMesh& mesh, const BoundaryLoop& loop, const Vector3& apex) {
   Patch patch;
   patch.input_vertices = static_cast<Index>(mesh.vertices.size());

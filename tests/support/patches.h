@@ -7,6 +7,7 @@
 #include "common/core/boundary_loops.h"
 #include "common/core/mesh.h"
 #include "common/core/patch.h"
+#include "common/core/patch_check.h"
 
 namespace meshcomplete {
 namespace test {
@@ -16,6 +17,9 @@ std::vector<BoundaryLoop> loops_of(const TriangleMesh& mesh);
 
 /// Pointers to all of them, as `check_patch` takes them.
 std::vector<const BoundaryLoop*> pointers(const std::vector<BoundaryLoop>& loops);
+
+/// `check_patch` of a patch that closes all of these loops.
+PatchCheck check(const TriangleMesh& mesh, const Patch& patch, const std::vector<BoundaryLoop>& loops);
 
 /// Every edge of the loop joined to one new vertex at `apex` (rounded to floats): rim-many faces.
 Patch fan_patch(const TriangleMesh& mesh, const BoundaryLoop& loop, const Vector3& apex);
