@@ -94,11 +94,13 @@ EdgeLengthField Run::make_field() const {
 
 Cushion Run::make_cushion() const {
   if (options_.cushion_radius) return Cushion(input_.blocks(), *options_.cushion_radius);
-  return Cushion(input_.blocks(), [this](const Vector3& at, bool alike) {
+  const auto radius = [this](const Vector3& at, bool alike) {
     const double at_rims = options_.cushion * field_.at(at);
     if (!alike) return at_rims;
     return at_rims + options_.cushion_growth * std::min(field_.distance(at), most_growth * at_rims);
-  });
+  };
+  return Cushion(input_.blocks(), radius,
+                 options_.cushion * field_.longest() * (1 + options_.cushion_growth * most_growth));
 }
 
 std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Progress& progress) {
