@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <queue>
 #include <string>
 #include <tuple>
@@ -19,6 +18,7 @@
 #include "common/core/error.h"
 #include "common/core/patch.h"
 #include "common/core/threads.h"
+#include "filter_poissoncompletion/coinciding_points.h"
 #include "filter_poissoncompletion/non_manifold_places.h"
 
 namespace meshcomplete {
@@ -167,26 +167,15 @@ VertexInfo Refiner::info(Index number, const Vector3& position, bool reached) co
 }
 
 void Refiner::insert_initial() {
-  std::vector<Index> order(initial_.size());
-  std::iota(order.begin(), order.end(), Index(0));
-  const auto less = [&](Index a, Index b) {
-    const Vector3 &p = initial_[a], &q = initial_[b];
-    return std::tie(p[0], p[1], p[2], a) < std::tie(q[0], q[1], q[2], b);
-  };
-  std::sort(order.begin(), order.end(), less);
-  const auto reached = [&](Index i) { return options_.seeds.empty() || options_.seeds[i] != 0; };
+  const std::vector<Index> first = first_at_position(initial_);
+  std::vector<char> reached(initial_.size(), 0);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    reached[first[i]] |= static_cast<char>(options_.seeds.empty() || options_.seeds[i] != 0);
   std::vector<std::pair<Point, VertexInfo>> points;
-  std::vector<Index> first(initial_.size());
   Eigen::AlignedBox3d box;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Index i = order[k];
-    const bool doubled = k > 0 && initial_[order[k - 1]] == initial_[i];
-    first[i] = doubled ? first[order[k - 1]] : i;
-    if (doubled) {
-      points.back().second.reached |= reached(i);
-      continue;
-    }
-    points.emplace_back(point_of(initial_[i]), info(i, initial_[i], reached(i)));
+  for (Index i = 0; i < first.size(); ++i) {
+    if (first[i] != i) continue;
+    points.emplace_back(point_of(initial_[i]), info(i, initial_[i], reached[i] != 0));
     box.extend(initial_[i]);
   }
   const Vector3 middle = box.center(), half = Vector3::Constant(0.5 * box.sizes().maxCoeff());
