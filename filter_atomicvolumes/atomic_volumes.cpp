@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "common/core/patch_check.h"
 #include "common/core/patch_pieces.h"
 #include "common/core/piece_finishing.h"
+#include "common/core/piece_results.h"
 #include "common/core/sheets.h"
 #include "common/core/stage_clock.h"
 #include "common/core/threads.h"
@@ -79,7 +79,6 @@ class Run {
   AtomicVolumesResult result(CompletionReport report);
 
  private:
-  bool companion(std::size_t loop) const;
   void refuse_sewn_loops();
   /// What space is divided by.
   const TriangleMesh& divided_mesh() const { return divisible_ ? divisible_->mesh : mesh_; }
@@ -91,8 +90,6 @@ class Run {
   std::vector<PatchPiece> pieces_of(const LabelledSurface& surface) const;
   SolutionVote vote(std::size_t shift, const VolumeSolution& solution) const;
   VolumeSolution best_solution(const PreparedConstraints& constraints, const Progress& progress) const;
-  void take_pieces(std::vector<PatchPiece> pieces);
-  std::string obstacle(const std::vector<std::size_t>& loops) const;
   std::vector<char> left_open() const;
   std::size_t exchange(const std::vector<char>& gone, std::vector<PatchPiece> others);
   std::size_t replace(std::vector<PatchPiece> fresh, const std::vector<char>& open);
@@ -178,45 +175,6 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
   return std::move(*best);
 }
 
-// A rim that no patch should close by itself, but that may be part of a larger hole: that of a single
-// triangle.
-bool Run::companion(std::size_t loop) const {
-  return loops_[loop].defect == LoopDefect::isolated_triangle &&
-         report_.holes[loop].reason == describe(LoopDefect::isolated_triangle);
-}
-
-// Why a group with these loops is not to be closed; empty when it is.
-std::string Run::obstacle(const std::vector<std::size_t>& loops) const {
-  for (std::size_t loop : loops) {
-    const HoleReport& hole = report_.holes[loop];
-    if (is_targeted(hole) || companion(loop)) continue;
-    return hole.outcome == HoleOutcome::skipped
-               ? "one patch closes this hole and another that is to stay open (" + hole.reason + ")"
-               : "one patch closes this hole and another that cannot be closed (" + hole.reason + ")";
-  }
-  return "";
-}
-
-void Run::take_pieces(std::vector<PatchPiece> pieces) {
-  pieces_ = std::move(pieces);
-  blocked_.assign(loops_.size(), 0);
-  std::map<std::size_t, std::string> reasons;
-  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
-    const std::vector<std::size_t> loops = loops_of(pieces_, group);
-    if (std::none_of(loops.begin(), loops.end(),
-                     [&](std::size_t loop) { return is_targeted(report_.holes[loop]); }))
-      continue;
-    std::string reason = obstacle(loops);
-    for (std::size_t loop : loops) blocked_[loop] = !reason.empty() && is_targeted(report_.holes[loop]);
-    if (reason.empty()) reason = describe(flaw_of(pieces_, group, loops_));
-    for (std::size_t i : group) pieces_[i].wanted = reason.empty();
-    for (std::size_t loop : loops)
-      if (!reason.empty()) reasons[loop] = reason;
-  }
-  for (const auto& [loop, reason] : reasons)
-    if (is_targeted(report_.holes[loop])) report_.holes[loop].reason = reason;
-}
-
 // The loops that another octree, or a patch that joins less, may close. Where space could not be divided in
 // one of several octrees, it could not in any of them, or another one would have been taken.
 std::vector<char> Run::left_open() const {
@@ -256,8 +214,9 @@ std::size_t Run::replace(std::vector<PatchPiece> fresh, const std::vector<char>&
     if (flaw_of(fresh, group, loops_) != Sheet::Flaw::none) continue;
     const auto is_open = [&](std::size_t loop) { return open[loop] != 0; };
     if (std::none_of(loops.begin(), loops.end(), is_open) ||
-        !std::all_of(loops.begin(), loops.end(),
-                     [&](std::size_t loop) { return is_open(loop) || companion(loop); }))
+        !std::all_of(loops.begin(), loops.end(), [&](std::size_t loop) {
+          return is_open(loop) || may_join(loops_[loop], report_.holes[loop]);
+        }))
       continue;
     for (std::size_t loop : loops) taken[loop] = 1;
     for (std::size_t i : group) {
@@ -362,7 +321,8 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
     for (const auto& notes :
          {constraints.notes(), solution.notes, describe_bubbles(sheets, options_.constraints)})
       report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
-    take_pieces(make_pieces(std::move(sheets), topology_, loop_numbers_));
+    pieces_ = make_pieces(std::move(sheets), topology_, loop_numbers_);
+    blocked_ = choose_pieces(pieces_, loops_, report_.holes, [](Sheet::Flaw flaw) { return describe(flaw); });
   }
   clock.end_of("dividing space and cutting");
   const PieceFinisher finisher(mesh_, topology_, input_, divided(),
@@ -380,47 +340,7 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
 
 AtomicVolumesResult Run::result(CompletionReport report) {
   AtomicVolumesResult result;
-  result.completion.patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
-  std::vector<HoleReport> holes;
-  std::vector<char> merged(report.holes.size(), 0);
-  for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
-    if (!pieces_[group.front()].wanted) continue;
-    const std::vector<std::size_t> loops = loops_of(pieces_, group);
-    bool closed = true;
-    std::string defect;
-    for (std::size_t i : group) {
-      closed &= pieces_[i].defect.empty();
-      if (defect.empty()) defect = pieces_[i].defect;
-    }
-    HoleReport& hole = report.holes[loops.front()];
-    const double first_edges = static_cast<double>(hole.edges);
-    Vector3 centre = hole.centre * first_edges;
-    for (std::size_t k = 1; k < loops.size(); ++k) {
-      const HoleReport& other = report.holes[loops[k]];
-      hole.loops.push_back(loops[k]);
-      hole.edges += other.edges;
-      hole.perimeter += other.perimeter;
-      centre += other.centre * static_cast<double>(other.edges);
-      merged[loops[k]] = 1;
-    }
-    hole.centre = centre / static_cast<double>(hole.edges);
-    hole.outcome = closed ? HoleOutcome::closed : HoleOutcome::failed;
-    hole.reason = defect;
-    for (std::size_t i : group) {
-      if (!closed) break;
-      hole.route = pieces_[i].route;
-      hole.vertices_added += pieces_[i].patch.vertices.size();
-      hole.faces_added += pieces_[i].patch.triangles.size();
-      append(result.completion.patch, pieces_[i].patch);
-    }
-  }
-  for (std::size_t i = 0; i < report.holes.size(); ++i) {
-    HoleReport& hole = report.holes[i];
-    if (hole.outcome == HoleOutcome::failed && hole.reason.empty()) hole.reason = "no patch reaches this rim";
-    if (!merged[i]) holes.push_back(std::move(hole));
-  }
-  report.holes = std::move(holes);
-  result.completion.report = std::move(report);
+  result.completion = gather_pieces(mesh_, pieces_, std::move(report));
   return result;
 }
 

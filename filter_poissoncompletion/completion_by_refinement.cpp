@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "common/core/error.h"
@@ -12,6 +13,7 @@
 #include "common/core/rim.h"
 #include "common/core/sheets.h"
 #include "common/core/stage_clock.h"
+#include "filter_poissoncompletion/coinciding_points.h"
 #include "filter_poissoncompletion/cushion.h"
 #include "filter_poissoncompletion/delaunay_refinement.h"
 #include "filter_poissoncompletion/edge_length_field.h"
@@ -41,14 +43,25 @@ std::string describe(Sheet::Flaw flaw) {
   return "";
 }
 
+// Rims whose edges lie on each other have nothing between them that a patch could fill.
+void refuse_sewn_loops(const TriangleMesh& mesh, const MergedRims& merged,
+                       const std::vector<BoundaryLoop>& loops, std::vector<HoleReport>& holes) {
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    for (std::size_t k = 0; k < loops[i].faces.size() && is_targeted(holes[i]); ++k)
+      if (merged.topology.opposite[half_edge_at(mesh, loops[i], k)] != MeshTopology::boundary)
+        holes[i].reason = "edges of this rim lie on each other; apply 'Merge Close Vertices' first";
+}
+
 class Run {
  public:
   Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
-      const InputNeighbourhood& input, const ImplicitFunction& function,
+      const MergedRims* merged, const InputNeighbourhood& input, const ImplicitFunction& function,
       const RefinedCompletionOptions& options, CompletionReport& report)
       : mesh_(mesh),
         topology_(topology),
         loops_(loops),
+        divided_(merged ? merged->mesh : mesh),
+        divided_topology_(merged ? merged->topology : topology),
         input_(input),
         function_(function),
         options_(options),
@@ -66,6 +79,8 @@ class Run {
   const TriangleMesh& mesh_;
   const MeshTopology& topology_;
   const std::vector<BoundaryLoop>& loops_;
+  const TriangleMesh& divided_;  // in which rim vertices at one position are one
+  const MeshTopology& divided_topology_;
   const InputNeighbourhood& input_;
   const ImplicitFunction& function_;
   const RefinedCompletionOptions& options_;
@@ -94,11 +109,13 @@ EdgeLengthField Run::make_field() const {
 
 Cushion Run::make_cushion() const {
   if (options_.cushion_radius) return Cushion(input_.blocks(), *options_.cushion_radius);
-  return Cushion(input_.blocks(), [this](const Vector3& at, bool alike) {
+  const auto radius = [this](const Vector3& at, bool alike) {
     const double at_rims = options_.cushion * field_.at(at);
     if (!alike) return at_rims;
     return at_rims + options_.cushion_growth * std::min(field_.distance(at), most_growth * at_rims);
-  });
+  };
+  return Cushion(input_.blocks(), radius,
+                 options_.cushion * field_.longest() * (1 + options_.cushion_growth * most_growth));
 }
 
 std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Progress& progress) {
@@ -108,15 +125,20 @@ std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Pro
       [this](const Vector3& at) { return near_rims * field_.at(at); }, input_.blocks(),
       options_.sample_share);
   std::vector<Vector3> positions;
-  std::vector<Index> number(mesh_.vertices.size(), 0);
+  std::vector<Index> number(mesh_.vertices.size(), 0), names;
   for (Index v : points.vertices) {
     number[v] = static_cast<Index>(positions.size());
     positions.push_back(mesh_.vertices[v]);
+    names.push_back(v);
+  }
+  for (Index h = 0; h < 3 * mesh_.triangles.size(); ++h) {
+    const Index v = mesh_.triangles[h / 3][h % 3], name = divided_.triangles[h / 3][h % 3];
+    if (name != v && points.vertices[number[v]] == v) names[number[v]] = name;
   }
   RefinementOptions refinement;
   refinement.criteria.edge_length = [this](const Vector3& at) { return field_.at(at); };
   refinement.criteria.smallest_angle = options_.smallest_angle;
-  refinement.around.emplace(ProtectedMesh{mesh_, cushion_, points.vertices});
+  refinement.around.emplace(ProtectedMesh{divided_, cushion_, names});
   refinement.seeds.assign(positions.size(), 0);
   std::fill_n(refinement.seeds.begin(), points.on_rims, 1);
   for (Index h : points.half_edges)
@@ -131,10 +153,10 @@ std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Pro
   figures.cells = complex.cells.size();
   figures.lost_edges = complex.lost_edges.size();
   const SeparatingSurface surface =
-      tailor({mesh_, topology_, complex, points.half_edges, points.rim_edges}, figures.tailoring,
+      tailor({divided_, divided_topology_, complex, points.half_edges, points.rim_edges}, figures.tailoring,
              progress.part(0.6, 0.7, "tailoring the patches"));
-  std::vector<PatchPiece> pieces =
-      make_pieces(split_into_sheets(mesh_, topology_, surface, mesh_), topology_, LoopNumbers(mesh_, loops_));
+  std::vector<PatchPiece> pieces = make_pieces(split_into_sheets(divided_, divided_topology_, surface, mesh_),
+                                               topology_, LoopNumbers(mesh_, loops_));
   clock.end_of("tailoring the patches");
   return pieces;
 }
@@ -148,8 +170,10 @@ RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTop
                                          const Progress& progress) {
   RefinedCompletion result;
   std::vector<PatchPiece> pieces;
+  const std::unique_ptr<MergedRims> merged = merge_rims(mesh, topology);
+  if (merged) refuse_sewn_loops(mesh, *merged, loops, report.holes);
   if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
-    Run run(mesh, topology, loops, input, function, options, report);
+    Run run(mesh, topology, loops, merged.get(), input, function, options, report);
     pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));
     choose_pieces(pieces, loops, report.holes, [](Sheet::Flaw flaw) { return describe(flaw); });
     StageClock clock(report);

@@ -1,7 +1,6 @@
 #include "filter_poissoncompletion/cushion.h"
 
 #include <Eigen/Geometry>
-#include <limits>
 #include <utility>
 
 #include "common/core/closest_point.h"
@@ -14,14 +13,16 @@ constexpr double least_cosine = 0.5;
 
 }  // namespace
 
-Cushion::Cushion(const TriangleBlocks& mesh, Radius radius) : mesh_(mesh), radius_(std::move(radius)) {}
+Cushion::Cushion(const TriangleBlocks& mesh, Radius radius, double largest)
+    : mesh_(mesh), radius_(std::move(radius)), largest_(largest) {}
 
 Cushion::Cushion(const TriangleBlocks& mesh, double radius)
-    : Cushion(mesh, [radius](const Vector3&, bool) { return radius; }) {}
+    : Cushion(
+          mesh, [radius](const Vector3&, bool) { return radius; }, radius) {}
 
 std::optional<Cushion::Nearest> Cushion::nearest(const Vector3& point) const {
   const TriangleMesh& mesh = mesh_.mesh();
-  double best = std::numeric_limits<double>::infinity();
+  double best = largest_ * largest_;
   std::optional<Nearest> found;
   const auto offer = [&](Index triangle) {
     if (squared_distance(mesh_.triangle_box(triangle), point) > best) return true;

@@ -25,12 +25,13 @@ class Cushion {
     double distance;
   };
 
-  Cushion(const TriangleBlocks& mesh, Radius radius);
+  /// `largest` (mesh units) bounds the radius: greater values of `radius` count as `largest`.
+  Cushion(const TriangleBlocks& mesh, Radius radius, double largest);
   /// The same radius everywhere.
   Cushion(const TriangleBlocks& mesh, double radius);
 
-  /// Nothing for a mesh without triangles. Cost: O(log faces + triangles whose boxes are nearer than what was
-  /// found first).
+  /// The nearest point of the mesh when it is nearer than `largest`. Cost: O(log faces + triangles in blocks
+  /// that are nearer than that, or than what was found first).
   std::optional<Nearest> nearest(const Vector3& point) const;
 
   /// The nearest point of the mesh when the radius there is greater than its distance, so that the point is
@@ -41,6 +42,7 @@ class Cushion {
  private:
   const TriangleBlocks& mesh_;
   Radius radius_;
+  double largest_;
 };
 
 }  // namespace meshcomplete

@@ -8,9 +8,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <queue>
 #include <string>
 #include <tuple>
@@ -18,6 +18,7 @@
 #include "common/core/error.h"
 #include "common/core/patch.h"
 #include "common/core/threads.h"
+#include "filter_poissoncompletion/coinciding_points.h"
 #include "filter_poissoncompletion/non_manifold_places.h"
 
 namespace meshcomplete {
@@ -86,6 +87,15 @@ Vector3 circumcentre(const CellHandle& cell) {
                  (2 * c.dot(ab));
 }
 
+// The facet across from a corner of a cell; it looks counter-clockwise from there.
+std::array<Vector3, 3> facet_towards(const CellHandle& cell, int corner) {
+  std::array<Vector3, 3> p;
+  for (int k = 0; k < 3; ++k)
+    p[static_cast<std::size_t>(k)] =
+        vector_of(cell->vertex(Triangulation::vertex_triple_index(corner, k))->point());
+  return p;
+}
+
 struct QueuedFacet {
   double badness;
   Index stamp, other_stamp;
@@ -124,7 +134,6 @@ class Refiner {
   void stamp(const CellHandle& cell);
   void queue_facets_of(const CellHandle& cell);
   void consider(const CellHandle& cell, int corner);
-  double badness(const CellHandle& cell, int corner) const;
   Vector3 outwards(const CellHandle& cell, int corner) const;
   std::optional<Vector3> surface_centre(const CellHandle& cell, int corner) const;
   void refine_queue();
@@ -158,26 +167,15 @@ VertexInfo Refiner::info(Index number, const Vector3& position, bool reached) co
 }
 
 void Refiner::insert_initial() {
-  std::vector<Index> order(initial_.size());
-  std::iota(order.begin(), order.end(), Index(0));
-  const auto less = [&](Index a, Index b) {
-    const Vector3 &p = initial_[a], &q = initial_[b];
-    return std::tie(p[0], p[1], p[2], a) < std::tie(q[0], q[1], q[2], b);
-  };
-  std::sort(order.begin(), order.end(), less);
-  const auto reached = [&](Index i) { return options_.seeds.empty() || options_.seeds[i] != 0; };
+  const std::vector<Index> first = first_at_position(initial_);
+  std::vector<char> reached(initial_.size(), 0);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    reached[first[i]] |= static_cast<char>(options_.seeds.empty() || options_.seeds[i] != 0);
   std::vector<std::pair<Point, VertexInfo>> points;
-  std::vector<Index> first(initial_.size());
   Eigen::AlignedBox3d box;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Index i = order[k];
-    const bool doubled = k > 0 && initial_[order[k - 1]] == initial_[i];
-    first[i] = doubled ? first[order[k - 1]] : i;
-    if (doubled) {
-      points.back().second.reached |= reached(i);
-      continue;
-    }
-    points.emplace_back(point_of(initial_[i]), info(i, initial_[i], reached(i)));
+  for (Index i = 0; i < first.size(); ++i) {
+    if (first[i] != i) continue;
+    points.emplace_back(point_of(initial_[i]), info(i, initial_[i], reached[i] != 0));
     box.extend(initial_[i]);
   }
   const Vector3 middle = box.center(), half = Vector3::Constant(0.5 * box.sizes().maxCoeff());
@@ -331,38 +329,17 @@ void Refiner::queue_facets_of(const CellHandle& cell) {
 
 void Refiner::consider(const CellHandle& cell, int corner) {
   bool reached = false;
-  for (int k = 0; k < 4; ++k) reached |= k != corner && cell->vertex(k)->info().reached;
-  if (!reached) return;
-  const double bad = badness(cell, corner);
-  if (bad > 0) queue_.push({bad, cell->info().stamp, cell->neighbor(corner)->info().stamp, cell, corner});
-}
-
-// Above 1 for edges that are too long, below for other faults, 0 for a good facet.
-double Refiner::badness(const CellHandle& cell, int corner) const {
-  const RefinementCriteria& criteria = options_.criteria;
-  Vector3 p[3];
-  double size = 0, side[3];
-  for (int k = 0, n = 0; k < 4; ++k) {
+  double size = 0;
+  for (int k = 0; k < 4; ++k) {
     if (k == corner) continue;
-    if (triangulation_.is_infinite(cell->vertex(k))) return 0;
+    if (triangulation_.is_infinite(cell->vertex(k))) return;
+    reached |= cell->vertex(k)->info().reached;
     size += cell->vertex(k)->info().size / 3;
-    p[n++] = vector_of(cell->vertex(k)->point());
   }
-  for (int k = 0; k < 3; ++k) side[k] = (p[(k + 1) % 3] - p[k]).norm();
-  const double longest = *std::max_element(side, side + 3), shortest = *std::min_element(side, side + 3);
-  const double ratio = longest / (criteria.longest * size);
-  if (ratio > 1) return ratio;
-  // The smallest angle lies across from the shortest side.
-  const double twice_area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
-  const double sine = twice_area * shortest / (side[0] * side[1] * side[2]);
-  const double bound = std::sin(criteria.smallest_angle * CGAL_PI / 180);
-  if (sine < bound) return 1 - 0.5 * sine / bound;
-  if (!criteria.distance) return 0;
-  const std::optional<Vector3> at = surface_centre(cell, corner);
-  if (!at) return 0;
-  const Vector3 normal = (p[1] - p[0]).cross(p[2] - p[0]) / twice_area;
-  const double height = std::abs(normal.dot(*at - p[0]));
-  return height > *criteria.distance ? 0.5 - 0.5 * *criteria.distance / height : 0;
+  if (!reached) return;
+  const double bad = badness(facet_towards(cell, corner), size, options_.criteria,
+                             [&] { return surface_centre(cell, corner); });
+  if (bad > 0) queue_.push({bad, cell->info().stamp, cell->neighbor(corner)->info().stamp, cell, corner});
 }
 
 // Where the surface crosses the line between the centres of the facet's cells.
@@ -388,11 +365,9 @@ std::optional<Vector3> Refiner::surface_centre(const CellHandle& cell, int corne
 
 // The normal of a facet that points out of the surface.
 Vector3 Refiner::outwards(const CellHandle& cell, int corner) const {
-  Vector3 p[3];
-  for (int k = 0; k < 3; ++k)
-    p[k] = vector_of(cell->vertex(Triangulation::vertex_triple_index(corner, k))->point());
+  const std::array<Vector3, 3> p = facet_towards(cell, corner);
   const Vector3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
-  return inside(cell) ? Vector3(-normal) : normal;  // it points to the cell
+  return inside(cell) ? Vector3(-normal) : normal;
 }
 
 void Refiner::refine(const QueuedFacet& facet) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,22 +12,9 @@
 #include "common/core/progress.h"
 #include "filter_poissoncompletion/cushion.h"
 #include "filter_poissoncompletion/delaunay_complex.h"
+#include "filter_poissoncompletion/facet_quality.h"
 
 namespace meshcomplete {
-
-/// What a good facet is. Source: the paper's Q, section 2.1; Boissonnat and Oudot (2006).
-struct RefinementCriteria {
-  /// Target length of the edges at a point (mesh units, positive). Required.
-  std::function<double(const Vector3&)> edge_length;
-  /// A facet whose longest edge is longer than this many target lengths is refined. With this default the
-  /// mean edge of a surface comes out at the target length.
-  double longest = 1.5;
-  /// A facet with a smaller angle is refined (degrees, 0 to 30; above 30 there may be no end).
-  double smallest_angle = 27;
-  /// A facet further from the surface than this, measured along its axis, is refined (mesh units, positive).
-  /// Absent: no matter.
-  std::optional<double> distance;
-};
 
 /// The mesh that a refinement leaves alone.
 struct ProtectedMesh {
