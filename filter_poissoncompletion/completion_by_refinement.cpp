@@ -26,6 +26,10 @@ namespace {
 // balls of the first facets at the rims, so that these see what is behind them.
 constexpr double near_rims = 2.5;
 
+// Which part of the cushion remains where the mesh faces another way, away from the rims: it may be the other
+// side of a wall that is thinner than the cushion.
+constexpr double thin_cushion = 0.15;
+
 // Up to which distance from the rims, in radii, the cushion grows: beyond there may be other sheets that face
 // the same way.
 constexpr double most_growth = 2;
@@ -110,9 +114,9 @@ EdgeLengthField Run::make_field() const {
 Cushion Run::make_cushion() const {
   if (options_.cushion_radius) return Cushion(input_.blocks(), *options_.cushion_radius);
   const auto radius = [this](const Vector3& at, bool alike) {
-    const double at_rims = options_.cushion * field_.at(at);
-    if (!alike) return at_rims;
-    return at_rims + options_.cushion_growth * std::min(field_.distance(at), most_growth * at_rims);
+    const double at_rims = options_.cushion * field_.at(at), away = field_.distance(at);
+    if (alike) return at_rims + options_.cushion_growth * std::min(away, most_growth * at_rims);
+    return away < at_rims ? at_rims : thin_cushion * at_rims;
   };
   return Cushion(input_.blocks(), radius,
                  options_.cushion * field_.longest() * (1 + options_.cushion_growth * most_growth));

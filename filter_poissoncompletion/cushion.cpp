@@ -1,6 +1,7 @@
 #include "filter_poissoncompletion/cushion.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <utility>
 
 #include "common/core/closest_point.h"
@@ -41,16 +42,13 @@ std::optional<Cushion::Nearest> Cushion::nearest(const Vector3& point) const {
   return found;
 }
 
-std::optional<Cushion::Nearest> Cushion::within(const Vector3& point, const Vector3& outwards) const {
-  std::optional<Nearest> near = nearest(point);
-  if (!near) return near;
+bool Cushion::reaches(const Nearest& nearest, const Vector3& outwards) const {
   const TriangleMesh& mesh = mesh_.mesh();
-  const Triangle& t = mesh.triangles[near->triangle];
+  const Triangle& t = mesh.triangles[nearest.triangle];
   const Vector3& p = mesh.vertices[t[0]];
   const Vector3 normal = (mesh.vertices[t[1]] - p).cross(mesh.vertices[t[2]] - p);
   const bool alike = normal.dot(outwards) > least_cosine * normal.norm() * outwards.norm();
-  if (!(near->distance < radius_(near->position, alike))) near.reset();
-  return near;
+  return nearest.distance < std::min(radius_(nearest.position, alike), largest_);
 }
 
 }  // namespace meshcomplete

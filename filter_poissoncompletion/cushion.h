@@ -34,10 +34,9 @@ class Cushion {
   /// that are nearer than that, or than what was found first).
   std::optional<Nearest> nearest(const Vector3& point) const;
 
-  /// The nearest point of the mesh when the radius there is greater than its distance, so that the point is
-  /// in the cushion. `outwards` is the direction in which the surface has its outside there. Cost: as
-  /// `nearest`.
-  std::optional<Nearest> within(const Vector3& point, const Vector3& outwards) const;
+  /// Whether what is nearest to a point is nearer than the radius there, so that the point is in the cushion.
+  /// `outwards` is the direction in which the surface has its outside at the point.
+  bool reaches(const Nearest& nearest, const Vector3& outwards) const;
 
  private:
   const TriangleBlocks& mesh_;

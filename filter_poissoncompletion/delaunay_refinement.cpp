@@ -34,6 +34,14 @@ constexpr double far_scale = 9;
 // How exactly the surface is met, in target edge lengths: far below what a facet's shape shows.
 constexpr double crossing_tolerance = 1e-3;
 
+// Over which part of a target edge length the function's slope is measured: it tells which way the surface
+// faces where facets are still too coarse to.
+constexpr double slope_step = 0.05;
+
+// In target edge lengths, how near the surface may come to the mesh before the mesh's vertices there are
+// wanted: balls of good facets reach no further.
+constexpr double mesh_in_sight = 1.5;
+
 // Pieces into which a protected edge is divided at most, and the least length of a piece in steps between
 // stored numbers: what is not an edge then is no matter of a single vertex nearby any more.
 constexpr std::size_t most_pieces = 64;
@@ -124,7 +132,7 @@ class Refiner {
   CellHandle conflicting(const Vector3& position, const CellHandle& near, const CellHandle& other) const;
   VertexHandle insert(const Vector3& position, const CellHandle& near, const CellHandle& other, bool reached,
                       Index on_edge, Index mesh_vertex);
-  void insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
+  bool insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
                           const CellHandle& other);
   bool protect_edges();
   bool protect(std::size_t edge);
@@ -135,6 +143,7 @@ class Refiner {
   void queue_facets_of(const CellHandle& cell);
   void consider(const CellHandle& cell, int corner);
   Vector3 outwards(const CellHandle& cell, int corner) const;
+  Vector3 slope(const Vector3& at, double step) const;
   std::optional<Vector3> surface_centre(const CellHandle& cell, int corner) const;
   void refine_queue();
   void refine(const QueuedFacet& facet);
@@ -376,16 +385,22 @@ void Refiner::refine(const QueuedFacet& facet) {
   if (!at) return;
   const Vector3 stored = as_stored(*at);
   if (options_.around) {
-    const std::optional<Cushion::Nearest> nearest =
-        options_.around->cushion.within(stored, outwards(facet.cell, facet.corner));
-    if (nearest) return insert_mesh_vertex(*nearest, stored, facet.cell, other);
+    const Cushion& cushion = options_.around->cushion;
+    const std::optional<Cushion::Nearest> nearest = cushion.nearest(stored);
+    if (nearest) {
+      const double size = options_.criteria.edge_length(stored);
+      const bool protect = cushion.reaches(*nearest, slope(stored, slope_step * size));
+      const bool near = protect || nearest->distance < mesh_in_sight * size;
+      if (near && insert_mesh_vertex(*nearest, stored, facet.cell, other)) return;
+      if (protect) return;
+    }
   }
   insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none);
 }
 
 // What the refinement has come near to has to be there in its own resolution, or the surface is taken for
-// one with it.
-void Refiner::insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
+// one with it. Whether there was anything to insert.
+bool Refiner::insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
                                  const CellHandle& other) {
   const TriangleMesh& mesh = options_.around->mesh;
   Index best = DelaunayComplex::none;
@@ -396,9 +411,19 @@ void Refiner::insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3&
     best = v;
     least = squared;
   }
-  if (best == DelaunayComplex::none) return;
+  if (best == DelaunayComplex::none) return false;
   inserted_[best] = 1;
-  insert(mesh.vertices[best], near, other, false, DelaunayComplex::none, best);
+  return insert(mesh.vertices[best], near, other, false, DelaunayComplex::none, best) != VertexHandle();
+}
+
+// The direction in which the function grows.
+Vector3 Refiner::slope(const Vector3& at, double step) const {
+  Vector3 result;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3 way = step * Vector3::Unit(k);
+    result[k] = function_.value(at + way) - function_.value(at - way);
+  }
+  return result;
 }
 
 void Refiner::refine_queue() {

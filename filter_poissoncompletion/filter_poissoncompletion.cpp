@@ -5,6 +5,8 @@
 #include "common/core/error.h"
 #include "common/host/close_holes.h"
 #include "common/host/other_layers.h"
+#include "filter_poissoncompletion/filter_poissonparameters.h"
+#include "filter_poissoncompletion/filter_poissonremeshing.h"
 #include "filter_poissoncompletion/poisson_completion.h"
 
 using namespace meshcomplete;
@@ -21,35 +23,12 @@ const char* const closing_description =
     "<b>\"Poisson-driven seamless completion of triangular meshes\"</b><br/>"
     "Computer Aided Geometric Design, 2015.";
 
-std::vector<ParameterDeclaration> oracle_parameters() {
-  return {
-      layer_parameter("GuideLayer", "Guide",
-                      "A layer whose surface, or points with normals, the completion follows too. It is not "
-                      "completed itself, and its faces are not added."),
-      switch_parameter("GuideVisible", "Visible layers are guides", "So are all other visible layers.",
-                       false),
-      integer_parameter("MinDepth", "Minimum depth",
-                        "How often the cube around the mesh is halved everywhere, 1 to 8.", "levels", 5, 1,
-                        8),
-      integer_parameter("MaxDepth", "Maximum depth",
-                        "How often it is halved near the holes, up to 16. 0: until cubes are as small as the "
-                        "edges at the holes, and as a third of thin walls.",
-                        "levels", 0, 0, 16),
-      positive_parameter("Scale", "Scale", "Size of the cube around the mesh; above 1, up to 10.",
-                         "bounding boxes", 2.2),
-      choice_parameter(
-          "Boundary", "Outside",
-          "Solid: all that is far away is outside, so that separate parts stay separate. Free: a "
-          "surface may leave the cube.",
-          {"Solid", "Free"}),
-      positive_parameter("Screening", "Screening",
-                         "How closely the reconstruction goes through the mesh. Less bridges wider gaps.", "",
-                         16),
-      positive_parameter("Samples", "Samples", "Points taken from the mesh.", "per face of a cube", 4),
-      choice_parameter("Interpolation", "Interpolation",
-                       "Of the reconstruction between corners of cubes. Trilinear: smooth and fast. "
-                       "Tetrahedral: as published.",
-                       {"Trilinear", "Tetrahedral"})};
+std::vector<ParameterDeclaration> guide_parameters() {
+  return {layer_parameter("GuideLayer", "Guide",
+                          "A layer whose surface, or points with normals, the completion follows too. It is "
+                          "not completed itself, and its faces are not added."),
+          switch_parameter("GuideVisible", "Visible layers are guides", "So are all other visible layers.",
+                           false)};
 }
 
 std::vector<ParameterDeclaration> refinement_parameters() {
@@ -69,23 +48,11 @@ std::vector<ParameterDeclaration> refinement_parameters() {
                        {"None", "Thin plate", "Membrane", "Normal variation"}, 3)};
 }
 
-void set_depths(const ParameterValues& values, PoissonOracleOptions& oracle) {
-  oracle.poisson.min_depth = values.integer("MinDepth");
-  if (values.integer("MaxDepth") > 0) oracle.max_depth = values.integer("MaxDepth");
-  oracle.scale = values.real("Scale");
-  oracle.poisson.boundary =
-      values.choice("Boundary") == 0 ? PoissonBoundary::dirichlet : PoissonBoundary::neumann;
-  oracle.poisson.screening = values.real("Screening");
-  oracle.density = values.real("Samples");
-  oracle.interpolation =
-      values.choice("Interpolation") == 0 ? FieldInterpolation::trilinear : FieldInterpolation::tetrahedral;
-}
-
 PoissonCompletionOptions options_from(const ParameterValues& values) {
   constexpr std::optional<SurfaceEnergy> energies[] = {
       std::nullopt, SurfaceEnergy::thin_plate, SurfaceEnergy::membrane, SurfaceEnergy::normal_variation};
   PoissonCompletionOptions options;
-  set_depths(values, options.oracle);
+  options.oracle = oracle_options(values);
   if (values.real("EdgeLength") > 0) options.refinement.edge_length = values.real("EdgeLength");
   options.refinement.rings = values.integer("Rings");
   if (values.real("CushionRadius") > 0) options.refinement.cushion_radius = values.real("CushionRadius");
@@ -93,22 +60,16 @@ PoissonCompletionOptions options_from(const ParameterValues& values) {
   return options;
 }
 
-void add_guide(LayerSurface surface, PoissonGuides& guides) {
-  if (!surface.mesh.triangles.empty()) guides.surfaces.push_back(std::move(surface.mesh));
-  guides.points.insert(guides.points.end(), surface.points.begin(), surface.points.end());
-  guides.normals.insert(guides.normals.end(), surface.normals.begin(), surface.normals.end());
-}
-
 /// What the layers that are guides add; `notes` are for the log.
-PoissonGuides read_guides(const FilterRun& run, std::vector<std::string>& notes) {
-  PoissonGuides guides;
+OrientedSurfaces read_guides(const FilterRun& run, std::vector<std::string>& notes) {
+  OrientedSurfaces guides;
   const bool all = run.parameters.boolean("GuideVisible");
   const MeshModel* chosen = run.parameters.layer("GuideLayer");
-  if (chosen != nullptr) add_guide(other_layer_surface(run, "GuideLayer"), guides);
+  if (chosen != nullptr) add_surface(other_layer_surface(run, "GuideLayer"), guides);
   if (!all) return guides;
   for (auto& [name, surface] : visible_layer_surfaces(run, chosen)) {
     notes.push_back("Guide: the layer \"" + name.toStdString() + "\"");
-    add_guide(std::move(surface), guides);
+    add_surface(std::move(surface), guides);
   }
   if (guides.empty())
     throw CompletionError("reading the parameters",
@@ -137,7 +98,12 @@ FilterDeclaration closing_filter() {
   filter.description = closing_description;
   filter.place = MenuPlace::remeshing;
   filter.parameters = close_holes_parameters();
-  for (const auto& more : {oracle_parameters(), refinement_parameters()})
+  const ParameterDeclaration max_depth =
+      integer_parameter("MaxDepth", "Maximum depth",
+                        "How often it is halved near the holes, up to 16. 0: until cubes are as small as the "
+                        "edges at the holes, and as a third of thin walls.",
+                        "levels", 0, 0, 16);
+  for (const auto& more : {guide_parameters(), oracle_parameters(max_depth, 2.2, 0), refinement_parameters()})
     filter.parameters.insert(filter.parameters.end(), more.begin(), more.end());
   filter.apply = apply_closing;
   return filter;
@@ -145,4 +111,4 @@ FilterDeclaration closing_filter() {
 
 }  // namespace
 
-FilterPoissonCompletion::FilterPoissonCompletion() { declare({closing_filter()}, this); }
+FilterPoissonCompletion::FilterPoissonCompletion() { declare({closing_filter(), remeshing_filter()}, this); }

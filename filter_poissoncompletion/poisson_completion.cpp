@@ -28,6 +28,10 @@ constexpr double cubes_in_wall = 3;
 // Thinner walls than this part of an edge are taken for flaws of the scan.
 constexpr double thinnest_wall = 0.25;
 
+// Cubes grow by this share of the distance from the rims: a quarter of what a balanced octree allows, so that
+// the surroundings of a hole are known well.
+constexpr double cube_growth = 0.125;
+
 // How fine the octree has to be at the rims: as their edges, and finer in thin walls.
 EdgeLengthField resolution(const TriangleMesh& mesh, const MeshTopology& topology,
                            const std::vector<BoundaryLoop>& loops, const std::vector<HoleReport>& holes,
@@ -66,14 +70,7 @@ std::vector<std::pair<std::string, double>> named(const PoissonCompletionFigures
 }
 
 void check_options(const PoissonCompletionOptions& o) {
-  const ScreenedPoissonOptions& poisson = o.oracle.poisson;
-  require(poisson.min_depth >= 1 && poisson.min_depth <= 8, "MinDepth must lie between 1 and 8.");
-  require(!o.oracle.max_depth || (*o.oracle.max_depth >= poisson.min_depth && *o.oracle.max_depth <= 16),
-          "MaxDepth must lie between MinDepth and 16, or be 0 for as deep as the rims need.");
-  require(std::isfinite(o.oracle.scale) && o.oracle.scale > 1 && o.oracle.scale <= 10,
-          "Scale must lie above 1 and be at most 10.");
-  require(positive(o.oracle.density), "Samples must be positive.");
-  require(std::isfinite(poisson.screening) && poisson.screening >= 0, "Screening must not be negative.");
+  check_options(o.oracle);
   require(o.refinement.rings >= 1 && o.refinement.rings <= 100, "Rings must lie between 1 and 100.");
   require(!o.refinement.edge_length || positive(*o.refinement.edge_length),
           "EdgeLength must be positive, or 0 for that of the mesh round the hole.");
@@ -97,7 +94,10 @@ PoissonCompletionResult complete_by_poisson(const TriangleMesh& mesh, const Mesh
   if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
     const InputNeighbourhood input(mesh);
     const EdgeLengthField cubes = resolution(mesh, topology, loops, report.holes, input);
-    PoissonOracle oracle = make_oracle(mesh, options.guides, cubes, options.oracle,
+    const CubeSizes sizes{
+        [&](const Vector3& at) { return std::max(cubes.at(at), cube_growth * cubes.distance(at)); },
+        cubes.shortest()};
+    PoissonOracle oracle = make_oracle(&mesh, options.guides, sizes, options.oracle,
                                        progress.part(0.1, 0.5, "building the oracle"));
     clock.end_of("building the oracle");
     RefinedCompletion refined =

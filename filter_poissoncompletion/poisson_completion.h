@@ -18,7 +18,9 @@ namespace meshcomplete {
 
 struct PoissonCompletionOptions {
   HoleSelectionOptions holes;
-  PoissonGuides guides;
+  /// What a user adds to the mesh to say how it goes on; not completed itself. Source: the paper,
+  /// sections 3.2 and 4.5.
+  OrientedSurfaces guides;
   PoissonOracleOptions oracle;
   RefinedCompletionOptions refinement;
 };

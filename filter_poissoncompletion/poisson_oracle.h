@@ -2,6 +2,7 @@
 // elsewhere.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -12,20 +13,24 @@
 
 namespace meshcomplete {
 
-class EdgeLengthField;
+/// Triangles and points with normals that a reconstruction goes through.
+struct OrientedSurfaces {
+  std::vector<TriangleMesh> meshes;
+  std::vector<Vector3> points;
+  std::vector<Vector3> normals;  ///< one for each point, outward, of any length
+  bool empty() const { return meshes.empty() && points.empty(); }
+};
 
-/// What a user adds to the mesh to say how it goes on: further surfaces and points, which are not completed
-/// themselves. Source: the paper, sections 3.2 and 4.5.
-struct PoissonGuides {
-  std::vector<TriangleMesh> surfaces;
-  std::vector<Vector3> points;   ///< with `normals`, outward
-  std::vector<Vector3> normals;  ///< one for each point
-  bool empty() const { return surfaces.empty() && points.empty(); }
+/// How fine the octree is to be.
+struct CubeSizes {
+  /// The side of the cubes at a point of the surface (mesh units, positive). Called from many threads.
+  std::function<double(const Vector3&)> at;
+  double smallest = 0;  ///< what `at` does not go below: what the automatic depth is for
 };
 
 struct PoissonOracleOptions {
   ScreenedPoissonOptions poisson;
-  /// Of the octree, up to 16; absent: as deep as the edges at the rims are long.
+  /// Of the octree, up to 16; absent: as deep as the smallest cubes ask for.
   std::optional<int> max_depth;
   double scale = 2.2;  ///< side of the octree's cube over the longest side of the bounding box, above 1
   double density = 4;  ///< samples for each face of a cube, positive
@@ -40,16 +45,16 @@ struct PoissonOracleFigures {
 
 struct PoissonOracle {
   OctreeField field;
+  std::vector<Vector3> sample_positions;
   PoissonOracleFigures figures;
 };
 
-/// `cubes` says how long edges are at the rims: cubes there are no larger, and grow with the distance. Throws
-/// CompletionError when there is nothing to sample, and `Cancelled`. Cost: O(faces) and near-linear in the
-/// octree's cubes.
-PoissonOracle make_oracle(const TriangleMesh& mesh, const PoissonGuides& guides, const EdgeLengthField& cubes,
-                          const PoissonOracleOptions& options, const Progress& progress = Progress());
+/// Throws CompletionError on options out of range.
+void check_options(const PoissonOracleOptions& options);
 
-/// The side of the cubes that the oracle has at a point of the surface, or less.
-double wanted_cube(const EdgeLengthField& cubes, const Vector3& point);
+/// The reconstruction of `mesh` (may be null) and `others`. Throws CompletionError when there is nothing to
+/// sample, and `Cancelled`. Cost: O(faces) and near-linear in the octree's cubes.
+PoissonOracle make_oracle(const TriangleMesh* mesh, const OrientedSurfaces& others, const CubeSizes& cubes,
+                          const PoissonOracleOptions& options, const Progress& progress = Progress());
 
 }  // namespace meshcomplete

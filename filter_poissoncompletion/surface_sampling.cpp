@@ -25,6 +25,13 @@ constexpr std::size_t grain = 4096;
 // right for all of it.
 constexpr double longest_side = 2;
 
+// The nearest points by which the area that a point stands for is measured: enough for the mean to be steady,
+// few enough to stay on one side of the surface.
+constexpr unsigned neighbours = 10;
+
+// Points on each face of a cube at least: Kazhdan and Hoppe's samples per node for clean scans.
+constexpr double points_per_cube = 1.5;
+
 constexpr double pi = 3.14159265358979323846;
 
 // The two numbers whose multiples fill the unit square most evenly (Roberts' R2 sequence).
@@ -102,8 +109,7 @@ std::vector<OrientedSample> sample_surface(const TriangleMesh& mesh, const Latti
 
 std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
                                           const std::vector<Vector3>& normals, const Lattice& lattice,
-                                          const SamplingOptions& options, int neighbours,
-                                          const Progress& progress) {
+                                          const SamplingOptions& options, const Progress& progress) {
   using Kernel = CGAL::Simple_cartesian<double>;
   using Item = std::pair<Kernel::Point_3, std::size_t>;
   using Traits = CGAL::Search_traits_adapter<Item, CGAL::First_of_pair_property_map<Item>,
@@ -118,7 +124,7 @@ std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
   tree.build();
   std::vector<OrientedSample> samples(items.size());
   for_each(items.size(), grain, progress, [&](std::size_t i) {
-    const Search search(tree, items[i].first, static_cast<unsigned>(neighbours + 1));
+    const Search search(tree, items[i].first, neighbours + 1);
     double reach = 0;  // squared
     std::size_t found = 0;
     for (const auto& [item, squared] : search) {
@@ -128,8 +134,8 @@ std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
     const std::size_t point = items[i].second;
     // So many points on the disc that reaches half way beyond the last of them.
     const double area = found > 1 ? pi * reach / (static_cast<double>(found) - 0.5) : 0;
-    samples[i] = {points[point], area * normals[point].normalized(),
-                  depth_of(lattice, options.cube_size(points[point]), options)};
+    const double cube = std::max(options.cube_size(points[point]), std::sqrt(points_per_cube * area));
+    samples[i] = {points[point], area * normals[point].normalized(), depth_of(lattice, cube, options)};
   });
   return samples;
 }

@@ -30,12 +30,11 @@ std::vector<OrientedSample> sample_surface(const TriangleMesh& mesh, const Latti
                                            const Progress& progress = Progress());
 
 /// Samples for a point set with normals: each stands for the area that its neighbours leave it, so that
-/// dense parts do not weigh more. `neighbours` is the number of nearest points that the area is measured
-/// with (at least 3). Points with a normal of no length, or coordinates that are not finite, are left out.
-/// Cost: O(n log n), threaded.
+/// dense parts do not weigh more, and asks for no cubes that would be mostly without a point. Points with a
+/// normal of no length, or coordinates that are not finite, are left out. Cost: O(n log n), threaded.
 std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
                                           const std::vector<Vector3>& normals, const Lattice& lattice,
-                                          const SamplingOptions& options, int neighbours = 10,
+                                          const SamplingOptions& options,
                                           const Progress& progress = Progress());
 
 /// The cube round the meshes' vertices that triangles use, and `points`: `scale` (more than 1) times as large

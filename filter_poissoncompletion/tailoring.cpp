@@ -168,7 +168,7 @@ void Tailor::match_facets() {
       const Index face = face_at(facet_towards_corner(complex_.cells[cell], k));
       if (face == none) continue;
       match(cell, k, face);
-      figures_.ring_faces_met += !met[face];
+      figures_.faces_met += !met[face];
       met[face] = 1;
     }
 }

@@ -25,8 +25,8 @@ struct TailoringInput {
 
 /// What the tailoring came to, for reports and tests.
 struct TailoringFigures {
-  std::size_t ring_faces_met = 0;  ///< ring faces that are facets of the triangulation
-  std::size_t contradictions = 0;  ///< cells that lie on both sides of the ring
+  std::size_t faces_met = 0;       ///< faces of the mesh that are facets of the triangulation
+  std::size_t contradictions = 0;  ///< cells that lie on both sides of the mesh
   std::size_t surplus = 0;         ///< facets that lay over the mesh's own faces
   std::size_t relabelled = 0;      ///< cells that are not on the side that the function has them on
 };

@@ -25,14 +25,18 @@ using CubeMatrix = std::array<double, 36>;  // symmetric, the upper half by rows
 constexpr std::size_t grain = 1024;  // blocks or corners in one go of a thread
 constexpr double jump = 0.5;         // of the function to either side of the surface: V has the length 1
 
-// Walsh-Hadamard transform, which makes the stiffness matrix of a cube diagonal.
-void transform(std::array<double, 8>& v) {
+// A number for each child of a block: the same arithmetic for all eight at once.
+using Octet = Eigen::Array<double, 8, 1>;
+
+// Walsh-Hadamard transform of the values at the corners of cubes, which makes their stiffness matrix
+// diagonal.
+void transform(std::array<Octet, 8>& v) {
   for (int stride = 1; stride < 8; stride *= 2)
     for (int i = 0; i < 8; ++i)
       if (!(i & stride)) {
-        const double a = v[i], b = v[i + stride];
-        v[i] = a + b;
-        v[i + stride] = a - b;
+        const Octet difference = v[i] - v[i + stride];
+        v[i] += v[i + stride];
+        v[i + stride] = difference;
       }
 }
 
@@ -83,6 +87,7 @@ class Solver {
     for (const OrientedSample& s : samples) wanted.push_back({lattice.snap(s.position), s.depth});
     octree_ = std::make_shared<CornerOctree>(wanted, options.min_depth, CornerOctree::Balance::two_to_one,
                                              progress);
+    cube_of_.assign(wanted.size(), 0);
     points_.reserve(wanted.size());
     for (const WantedCube& one : wanted) points_.push_back(one.point);
   }
@@ -96,7 +101,9 @@ class Solver {
   };
   int depth() const { return octree_->depth(); }
   double side(int depth) const { return lattice_.side() / static_cast<double>(std::int64_t{1} << depth); }
-  Place place_of(std::size_t sample, int depth) const;
+  void to_root() { std::fill(cube_of_.begin(), cube_of_.end(), Index(0)); }
+  void descend(int depth, const Progress& progress);
+  Place place_of(std::size_t sample) const;
   std::array<Index, 8> parent_corners(int depth, Index block) const;
 
   template <class Body>
@@ -104,7 +111,7 @@ class Solver {
   void prolong(int depth, const Values& coarse, Values& fine, const Progress& progress) const;
 
   Vectors spread_normals(int depth, const Progress& progress) const;
-  std::vector<Values> right_hand_sides(const Progress& progress) const;
+  std::vector<Values> right_hand_sides(const Progress& progress);
   void screen(int depth, std::vector<Index>& matrix_of, std::vector<CubeMatrix>& matrices) const;
   PoissonLevelFigures solve_level(int depth, const Values& right, Values& u, const Progress& progress) const;
   double mean_at_samples(const std::vector<Values>& values) const;
@@ -113,20 +120,31 @@ class Solver {
   const std::vector<OrientedSample>& samples_;
   const ScreenedPoissonOptions& options_;
   std::shared_ptr<CornerOctree> octree_;
-  std::vector<LatticePoint> points_;
+  std::vector<LatticePoint> points_;  // of the samples
+  std::vector<Index> cube_of_;        // that holds each sample, at the depth that is looked at
   const std::array<std::array<double, 8>, 27> prolongation_ = prolongation();
 };
 
-Solver::Place Solver::place_of(std::size_t sample, int depth) const {
+// To the cubes of at most this depth, from such of any smaller one.
+void Solver::descend(int depth, const Progress& progress) {
   const Octree& octree = octree_->octree();
-  Place place;
-  place.cube = octree.find(points_[sample], depth);
-  const double side = static_cast<double>(Octree::side(octree[place.cube].depth));
+  for_each(cube_of_.size(), grain, progress, [&](std::size_t s) {
+    Index& cube = cube_of_[s];
+    while (!octree.is_leaf(cube) && octree[cube].depth < depth) {
+      const LatticePoint middle = octree.centre(cube);
+      Index child = octree[cube].children;
+      for (int k = 0; k < 3; ++k) child += points_[s][k] >= middle[k] ? 1u << k : 0;
+      cube = child;
+    }
+  });
+}
+
+Solver::Place Solver::place_of(std::size_t sample) const {
+  const Octree::Cube& cube = octree_->octree()[cube_of_[sample]];
+  const double side = static_cast<double>(Octree::side(cube.depth));
   std::array<double, 3> x;
-  for (int k = 0; k < 3; ++k)
-    x[k] = static_cast<double>(points_[sample][k] - octree[place.cube].low[k]) / side;
-  place.weights = corner_weights(x);
-  return place;
+  for (int k = 0; k < 3; ++k) x[k] = static_cast<double>(points_[sample][k] - cube.low[k]) / side;
+  return {cube_of_[sample], corner_weights(x)};
 }
 
 std::array<Index, 8> Solver::parent_corners(int depth, Index block) const {
@@ -164,7 +182,7 @@ Vectors Solver::spread_normals(int depth, const Progress& progress) const {
   const double volume = std::pow(side(depth), 3);
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     if (samples_[s].depth != depth) continue;
-    const Place place = place_of(s, depth);
+    const Place place = place_of(s);
     const std::array<Index, 8> corners = octree_->corners(place.cube);
     for (int c = 0; c < 8; ++c) density[corners[c]] += place.weights[c] / volume * samples_[s].area_normal;
   }
@@ -186,9 +204,11 @@ Vectors Solver::spread_normals(int depth, const Progress& progress) const {
 }
 
 // Of every level the integrals of V times the gradients of the corners' functions.
-std::vector<Values> Solver::right_hand_sides(const Progress& progress) const {
+std::vector<Values> Solver::right_hand_sides(const Progress& progress) {
   std::vector<Vectors> density(depth());
+  to_root();
   for (int d = 1; d <= depth(); ++d) {
+    descend(d, progress);
     density[d - 1] = spread_normals(d, progress);
     if (d == 1) continue;
     const Level& level = octree_->level(d);
@@ -243,7 +263,7 @@ void Solver::screen(int depth, std::vector<Index>& matrix_of, std::vector<CubeMa
       options_.screening * (depth < this->depth() ? options_.coarse_screening : 1) / side(depth);
   const Index first = CornerOctree::first_cube(level.first_block);
   for (std::size_t s = 0; s < samples_.size(); ++s) {
-    const Place place = place_of(s, depth);
+    const Place place = place_of(s);
     if (octree_->octree()[place.cube].depth != depth) continue;
     Index& number = matrix_of[place.cube - first];
     if (number == Octree::none) {
@@ -277,15 +297,16 @@ class LevelEquations {
       const CornerOctree::BlockCorners& corners = level_.corners[block];
       std::array<double, 27> in, out{};
       for (int i = 0; i < 27; ++i) in[i] = u[corners[i]];
+      std::array<Octet, 8> v;
+      for (int c = 0; c < 8; ++c)
+        for (int child = 0; child < 8; ++child) v[c][child] = in[CornerOctree::corner_place(child, c)];
+      transform(v);
+      for (int c = 0; c < 8; ++c) v[c] *= values_[c];
+      transform(v);
       for (int child = 0; child < 8; ++child) {
-        std::array<double, 8> v, w;
-        for (int c = 0; c < 8; ++c) v[c] = w[c] = in[CornerOctree::corner_place(child, c)];
-        transform(v);
-        for (int c = 0; c < 8; ++c) v[c] *= values_[c];
-        transform(v);
         const Index number = matrix_of_[8 * block + child];
-        if (number != Octree::none) multiply(matrices_[number], w, v);
-        for (int c = 0; c < 8; ++c) out[CornerOctree::corner_place(child, c)] += v[c];
+        if (number != Octree::none) add_product(matrices_[number], child, in, v);
+        for (int c = 0; c < 8; ++c) out[CornerOctree::corner_place(child, c)] += v[c][child];
       }
       for (int i = 0; i < 27; ++i)
         if (free_[corners[i]]) result[corners[i]] += out[i];
@@ -312,15 +333,17 @@ class LevelEquations {
   }
 
  private:
-  static void multiply(const CubeMatrix& matrix, const std::array<double, 8>& in,
-                       std::array<double, 8>& sum) {
+  static void add_product(const CubeMatrix& matrix, int child, const std::array<double, 27>& in,
+                          std::array<Octet, 8>& sum) {
     const double* entry = matrix.data();
     for (int i = 0; i < 8; ++i) {
-      sum[i] += *entry++ * in[i];
+      const double own = in[CornerOctree::corner_place(child, i)];
+      double total = *entry++ * own;
       for (int j = i + 1; j < 8; ++j, ++entry) {
-        sum[i] += *entry * in[j];
-        sum[j] += *entry * in[i];
+        total += *entry * in[CornerOctree::corner_place(child, j)];
+        sum[j][child] += *entry * own;
       }
+      sum[i][child] += total;
     }
   }
   template <class Body>
@@ -397,7 +420,7 @@ PoissonLevelFigures Solver::solve_level(int depth, const Values& right, Values& 
 double Solver::mean_at_samples(const std::vector<Values>& values) const {
   double sum = 0, weights = 0;
   for (std::size_t s = 0; s < samples_.size(); ++s) {
-    const Place place = place_of(s, CornerOctree::most_depth);
+    const Place place = place_of(s);
     const Values& level = values[octree_->octree()[place.cube].depth - 1];
     const std::array<Index, 8> corners = octree_->corners(place.cube);
     const double weight = samples_[s].area_normal.norm();
@@ -412,6 +435,7 @@ PoissonSolution Solver::run(const Progress& progress) {
   const std::vector<Values> right = right_hand_sides(progress.part(0, 0.2, stage));
   std::vector<Values> values(depth());
   std::vector<PoissonLevelFigures> figures;
+  to_root();
   for (int d = 1; d <= depth(); ++d) {
     // A level has about four times the cubes of the one before.
     const Progress part =
@@ -421,6 +445,7 @@ PoissonSolution Solver::run(const Progress& progress) {
       u.assign(octree_->level(1).corner_count, options_.boundary == PoissonBoundary::dirichlet ? jump : 0.0);
     else
       prolong(d, values[d - 2], u, part);
+    descend(d, part);
     figures.push_back(solve_level(d, right[d - 1], u, part));
     part.update(1);
   }

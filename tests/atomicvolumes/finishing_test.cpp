@@ -1,4 +1,4 @@
-#include "filter_atomicvolumes/finishing.h"
+#include "common/core/finishing.h"
 
 #include <gtest/gtest.h>
 

@@ -29,8 +29,8 @@ def filter_folders():
 
 
 def is_plugin(path):
-    """filter_<name>/filter_<name>.{h,cpp}: the only files of a filter that know MeshLab."""
-    return path.stem == path.parent.name
+    """filter_<name>/filter_*.{h,cpp}: the only files of a filter that know MeshLab."""
+    return path.stem.startswith("filter_")
 
 
 class IncludesRunDownward(unittest.TestCase):

@@ -1,0 +1,26 @@
+// What the filters of this plugin share: the parameters of the reconstruction, and layers to reconstruct
+// from.
+#pragma once
+
+#include <vector>
+
+#include "common/host/close_holes_parameters.h"
+#include "common/host/filter_declaration.h"
+#include "common/host/other_layers.h"
+#include "filter_poissoncompletion/poisson_oracle.h"
+
+namespace meshcomplete {
+namespace host {
+
+/// `max_depth` is the declaration of MaxDepth, the other two are defaults.
+std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_depth, double scale,
+                                                    int boundary);
+
+/// The values of these parameters.
+PoissonOracleOptions oracle_options(const ParameterValues& values);
+
+/// Adds the surface of a layer.
+void add_surface(LayerSurface surface, OrientedSurfaces& surfaces);
+
+}  // namespace host
+}  // namespace meshcomplete

@@ -1,0 +1,84 @@
+#include "filter_poissoncompletion/poisson_remeshing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_set>
+
+#include "common/core/error.h"
+#include "common/core/patch.h"
+#include "common/core/stage_clock.h"
+#include "filter_poissoncompletion/surface_meshing.h"
+#include "filter_poissoncompletion/surface_sampling.h"
+
+namespace meshcomplete {
+namespace {
+
+constexpr int usual_depth = 8;
+
+// In the octree's finest cubes: edges of facets that all have one size, edges of flat facets, and how far
+// adaptive ones may be from the surface.
+constexpr double uniform_edge = 2, longest_edge = 8, usual_distance = 0.15;
+
+// A start in each cube of this depth that holds a sample, so that no component is missed that is as large.
+constexpr int depth_of_starts = 6;
+
+void require(bool condition, const char* message) {
+  if (!condition) throw CompletionError("reading the parameters", message);
+}
+
+bool positive(double x) { return std::isfinite(x) && x > 0; }
+
+std::vector<Vector3> starts(const OctreeField& field, const std::vector<Vector3>& samples) {
+  std::unordered_set<Index> taken;
+  std::vector<Vector3> result;
+  for (const Vector3& p : samples)
+    if (taken.insert(field.octree().octree().find(field.lattice().snap(p), depth_of_starts)).second)
+      result.push_back(p);
+  return result;
+}
+
+}  // namespace
+
+void check_options(const PoissonRemeshingOptions& o) {
+  check_options(o.oracle);
+  require(!o.edge_length || positive(*o.edge_length),
+          "EdgeLength must be positive, or 0 for one that goes with the octree.");
+  require(!o.distance || positive(*o.distance),
+          "Distance must be positive, or 0 for one that goes with the octree.");
+  require(o.smallest_angle >= 0 && o.smallest_angle <= 30, "Angle must lie between 0 and 30 degrees.");
+}
+
+PoissonRemeshingResult remesh_by_poisson(const OrientedSurfaces& surface,
+                                         const PoissonRemeshingOptions& options, const Progress& progress) {
+  check_options(options);
+  PoissonRemeshingResult result;
+  CompletionReport report;
+  StageClock clock(report);
+  PoissonOracleOptions oracle_options = options.oracle;
+  if (!oracle_options.max_depth)
+    oracle_options.max_depth = std::max(usual_depth, oracle_options.poisson.min_depth);
+  // Cubes as small as the depth allows everywhere.
+  const double smallest = std::numeric_limits<double>::min();
+  PoissonOracle oracle = make_oracle(nullptr, surface, {[=](const Vector3&) { return smallest; }, smallest},
+                                     oracle_options, progress.part(0, 0.5, "building the oracle"));
+  clock.end_of("building the oracle");
+  const OctreeField& field = oracle.field;
+  const double cube = field.lattice().side() / std::exp2(oracle.figures.depth);
+  SurfaceMeshingOptions meshing;
+  const double length = options.edge_length.value_or((options.adaptive ? longest_edge : uniform_edge) * cube);
+  meshing.criteria.edge_length = [length](const Vector3&) { return length; };
+  meshing.criteria.smallest_angle = options.smallest_angle;
+  if (options.adaptive) meshing.criteria.distance = options.distance.value_or(usual_distance * cube);
+  const std::vector<Vector3> points =
+      find_surface_points(field, starts(field, oracle.sample_positions), longest_edge * cube,
+                          usual_distance * cube, progress.part(0.5, 0.55, "finding the surface"));
+  result.mesh = mesh_surface(field, points, meshing, progress.part(0.55, 1, "meshing the surface"));
+  clock.end_of("meshing the surface");
+  result.oracle = std::move(oracle.figures);
+  result.stage_seconds = std::move(report.stage_seconds);
+  progress.update(1);
+  return result;
+}
+
+}  // namespace meshcomplete
