@@ -165,10 +165,8 @@ FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, co
                      const Progress& progress) {
   Finisher finisher(rough, options, context);
   if (options.remesh || options.fairing) {
-    // A membrane stays close to the rough patch, which meets nothing.
     std::vector<std::optional<SurfaceEnergy>> energies = {options.fairing};
-    if (options.fairing && *options.fairing != SurfaceEnergy::membrane)
-      energies.push_back(SurfaceEnergy::membrane);
+    if (options.fairing && options.fairing != options.calm) energies.push_back(options.calm);
     for (const std::optional<SurfaceEnergy>& energy : energies) {
       try {
         FinishedPatch free = finisher.freely(energy, progress);
