@@ -40,7 +40,8 @@ std::string describe(Sheet::Flaw flaw) {
     case Sheet::Flaw::none:
       break;
     case Sheet::Flaw::open:
-      return "the reconstructed surface does not separate this hole from the rest of the mesh";
+      return "the reconstructed surface does not separate this hole from the rest of the mesh; where its "
+             "boundary is noisy, try 1 or more for 'RemoveRings'";
     case Sheet::Flaw::joins_vertices:
       return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
              "'Merge Close Vertices' first";
