@@ -5,6 +5,7 @@
 #include "common/core/boundary_loops.h"
 #include "common/core/error.h"
 #include "common/core/hole_targets.h"
+#include "common/core/reduced_mesh.h"
 #include "filter_atomicvolumes/offending_faces.h"
 #include "filter_atomicvolumes/volume_solution.h"
 
@@ -25,13 +26,7 @@ class Remover {
  public:
   Remover(const TriangleMesh& mesh, const MeshSelection& selection, const AtomicVolumesOptions& options,
           std::uint64_t seed)
-      : options_(options) {
-    removal_.mesh = mesh;
-    removal_.selection = selection;
-    removal_.seed = seed;
-    number_.resize(mesh.triangles.size());
-    for (Index t = 0; t < number_.size(); ++t) number_[t] = t;
-  }
+      : options_(options), rest_(unreduced(mesh, selection)), seed_(seed) {}
 
   /// Absent when there is no end, or not before as many faces as `limit` are gone.
   std::optional<FaceRemoval> run(std::size_t limit, const Progress& progress);
@@ -39,18 +34,17 @@ class Remover {
  private:
   std::vector<char> targeted_rims(const MeshTopology& topology, const Progress& progress) const;
   std::vector<Index> offending(const Progress& progress) const;
-  void remove(const std::vector<Index>& faces);
 
   const AtomicVolumesOptions& options_;
-  FaceRemoval removal_;
-  std::vector<Index> number_;  // of each face that is left, in the whole mesh
+  ReducedMesh rest_;
+  const std::uint64_t seed_;
 };
 
 // Marks the half-edges of the loops that are to be closed; empty when there are none.
 std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Progress& progress) const {
-  const TriangleMesh& mesh = removal_.mesh;
+  const TriangleMesh& mesh = rest_.mesh;
   const std::vector<BoundaryLoop> loops = trace_boundary_loops(mesh, topology, progress);
-  std::vector<HoleReport> holes = select_holes(mesh, loops, removal_.selection, options_.holes);
+  std::vector<HoleReport> holes = select_holes(mesh, loops, rest_.selection, options_.holes);
   target_islands(loops, holes);
   std::vector<char> rims;
   for (std::size_t i = 0; i < loops.size(); ++i) {
@@ -64,53 +58,26 @@ std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Pro
 // By the mesh itself, also where faces intersect or vertices touch: those are in the way, too, and without
 // them the completion needs no other mesh to divide space by.
 std::vector<Index> Remover::offending(const Progress& progress) const {
-  const TriangleMesh& mesh = removal_.mesh;
+  const TriangleMesh& mesh = rest_.mesh;
   const MeshTopology topology = build_topology(mesh, progress);
   const std::vector<char> rims = targeted_rims(topology, progress);
   if (rims.empty()) return {};
   const InputNeighbourhood neighbourhood(mesh);
   const PreparedConstraints constraints(mesh, topology, neighbourhood, options_.constraints, progress);
   const VolumeSolution solution =
-      solve_volumes(mesh, topology, neighbourhood, options_, constraints, removal_.seed, progress);
+      solve_volumes(mesh, topology, neighbourhood, options_, constraints, seed_, progress);
   return offending_faces(solution.mesh, solution.decomposition, rims);
 }
 
-// Vertices of faces that go are marked in the selection, so that a hole that was asked for stays so.
-void Remover::remove(const std::vector<Index>& faces) {
-  TriangleMesh& mesh = removal_.mesh;
-  MeshSelection& selection = removal_.selection;
-  std::vector<Triangle> triangles;
-  std::vector<Index> number;
-  std::vector<char> selected;
-  if (options_.holes.selected_only) selection.vertices.resize(mesh.vertices.size(), 0);
-  auto next = faces.begin();
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    if (next != faces.end() && *next == t) {
-      ++next;
-      removal_.faces.push_back(number_[t]);
-      if (options_.holes.selected_only)
-        for (Index v : mesh.triangles[t]) selection.vertices[v] = 1;
-      continue;
-    }
-    triangles.push_back(mesh.triangles[t]);
-    number.push_back(number_[t]);
-    if (!selection.faces.empty()) selected.push_back(selection.faces[t]);
-  }
-  mesh.triangles = std::move(triangles);
-  number_ = std::move(number);
-  selection.faces = std::move(selected);
-}
-
 std::optional<FaceRemoval> Remover::run(std::size_t limit, const Progress& progress) {
-  for (;; ++removal_.rounds) {
+  for (int rounds = 0;; ++rounds) {
     const std::vector<Index> faces = offending(progress.part(0, 0, stage));
-    if (faces.empty()) {
-      std::sort(removal_.faces.begin(), removal_.faces.end());
-      return std::move(removal_);
-    }
-    if (removal_.rounds == most_rounds || removal_.faces.size() + faces.size() >= limit) return std::nullopt;
-    remove(faces);
-    progress.update((removal_.rounds + 1.0) / most_rounds);
+    if (faces.empty())
+      return FaceRemoval{std::move(rest_.removed), seed_, rounds, std::move(rest_.mesh),
+                         std::move(rest_.selection)};
+    if (rounds == most_rounds || rest_.removed.size() + faces.size() >= limit) return std::nullopt;
+    remove_faces(rest_, faces, options_.holes.selected_only);
+    progress.update((rounds + 1.0) / most_rounds);
   }
 }
 

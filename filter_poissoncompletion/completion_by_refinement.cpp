@@ -18,6 +18,7 @@
 #include "filter_poissoncompletion/delaunay_refinement.h"
 #include "filter_poissoncompletion/edge_length_field.h"
 #include "filter_poissoncompletion/initial_points.h"
+#include "filter_poissoncompletion/surface_gaps.h"
 
 namespace meshcomplete {
 namespace {
@@ -39,7 +40,8 @@ std::string describe(Sheet::Flaw flaw) {
     case Sheet::Flaw::none:
       break;
     case Sheet::Flaw::open:
-      return "the reconstructed surface does not separate this hole from the rest of the mesh";
+      return "the reconstructed surface does not separate this hole from the rest of the mesh; where its "
+             "boundary is noisy, try 1 or more for 'RemoveRings'";
     case Sheet::Flaw::joins_vertices:
       return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
              "'Merge Close Vertices' first";
@@ -156,9 +158,12 @@ std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Pro
   figures.points = complex.vertices.size();
   figures.cells = complex.cells.size();
   figures.lost_edges = complex.lost_edges.size();
-  const SeparatingSurface surface =
+  SeparatingSurface surface =
       tailor({divided_, divided_topology_, complex, points.half_edges, points.rim_edges}, figures.tailoring,
              progress.part(0.6, 0.7, "tailoring the patches"));
+  figures.gaps = close_gaps(
+      surface, divided_,
+      {points.half_edges.begin(), points.half_edges.begin() + static_cast<std::ptrdiff_t>(points.rim_edges)});
   std::vector<PatchPiece> pieces = make_pieces(split_into_sheets(divided_, divided_topology_, surface, mesh_),
                                                topology_, LoopNumbers(mesh_, loops_));
   clock.end_of("tailoring the patches");

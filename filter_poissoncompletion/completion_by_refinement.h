@@ -13,6 +13,7 @@
 #include "common/core/patch.h"
 #include "common/core/patch_check.h"
 #include "common/core/progress.h"
+#include "filter_poissoncompletion/surface_gaps.h"
 #include "filter_poissoncompletion/tailoring.h"
 
 namespace meshcomplete {
@@ -34,12 +35,14 @@ struct RefinedCompletionOptions {
   /// Facets with a smaller angle are refined (degrees, 0 to 30).
   double smallest_angle = 27;
   /// What is done to the patches after they were cut out. Without fairing they keep the function's shape.
-  FinishingOptions finishing = {true, SurfaceEnergy::normal_variation, std::nullopt, "as cut out"};
+  FinishingOptions finishing = {true, SurfaceEnergy::normal_variation, std::nullopt, std::nullopt,
+                                "as cut out"};
 };
 
 struct RefinedCompletionFigures {
   std::size_t initial_points = 0, points = 0, cells = 0, lost_edges = 0;
   TailoringFigures tailoring;
+  SurfaceGapFigures gaps;
 };
 
 struct RefinedCompletion {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/reduced_mesh.h"
 #include "common/host/close_holes.h"
 #include "common/host/other_layers.h"
 #include "filter_poissoncompletion/filter_poissonparameters.h"
@@ -33,6 +34,10 @@ std::vector<ParameterDeclaration> guide_parameters() {
 
 std::vector<ParameterDeclaration> refinement_parameters() {
   return {
+      integer_parameter("RemoveRings", "Remove rings",
+                        "So many rings of faces are removed round each hole before it is closed, for noisy "
+                        "boundaries. More than 0 makes the result a new layer, and the log names them.",
+                        "rings", 0, 0, 100),
       length_parameter("EdgeLength", "Edge length",
                        "Length of the new edges. 0: as in the mesh around, and between holes of unlike "
                        "meshes in between. A percentage is of the bounding box's diagonal."),
@@ -84,7 +89,18 @@ void apply_closing(FilterRun& run) {
   close_holes(run, [&](const TriangleMesh& mesh, const MeshSelection& selection,
                        const HoleSelectionOptions& holes, const Progress& progress) {
     options.holes = holes;
-    ClosedHoles closed{complete_by_poisson(mesh, selection, options, progress).completion, {}};
+    const int rings = run.parameters.integer("RemoveRings");
+    ClosedHoles closed;
+    if (rings > 0) {
+      ReducedMesh rest =
+          without_rings(mesh, selection, holes, rings, progress.part(0, 0.05, "removing rings"));
+      closed.completion =
+          complete_by_poisson(rest.mesh, rest.selection, options, progress.part(0.05, 1, "closing holes"))
+              .completion;
+      closed.removed = std::move(rest.removed);
+    } else {
+      closed.completion = complete_by_poisson(mesh, selection, options, progress).completion;
+    }
     std::vector<std::string>& all_notes = closed.completion.report.notes;
     all_notes.insert(all_notes.begin(), notes.begin(), notes.end());
     return closed;

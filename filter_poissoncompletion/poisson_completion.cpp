@@ -66,7 +66,8 @@ std::vector<std::pair<std::string, double>> named(const PoissonCompletionFigures
           {"octree depth", oracle.depth},
           {"initial points", number(refinement.initial_points)},
           {"Delaunay vertices", number(refinement.points)},
-          {"Delaunay cells", number(refinement.cells)}};
+          {"Delaunay cells", number(refinement.cells)},
+          {"gaps closed at rims", number(refinement.gaps.closed)}};
 }
 
 void check_options(const PoissonCompletionOptions& o) {

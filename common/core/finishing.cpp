@@ -83,6 +83,7 @@ void split_doubled_edges(PatchMesh& patch, const Rim& rim) {
 }
 
 // A patch of this area at these edge lengths, and swelling: what grows beyond that has no minimum to go to.
+// Never more than remeshing allows by itself.
 std::size_t most_vertices(const PatchMesh& patch, const std::vector<double>& length) {
   double count = 0;
   for (Index t = 0; t < patch.triangle_count(); ++t) {
@@ -91,7 +92,9 @@ std::size_t most_vertices(const PatchMesh& patch, const std::vector<double>& len
     for (Index v : patch.triangles()[t]) mean += length[v] / 3;
     if (mean > 0) count += 0.5 * patch.area_normal(t).norm() / (mean * mean);
   }
-  return patch.vertex_count() + static_cast<std::size_t>(std::min(swelling * count, 1e9)) + least_limit;
+  const double grown = static_cast<double>(patch.vertex_count() + least_limit) + swelling * count;
+  const std::size_t most = RemeshOptions().max_vertices;
+  return grown < static_cast<double>(most) ? static_cast<std::size_t>(grown) : most;
 }
 
 class Finisher {
@@ -165,10 +168,8 @@ FinishedPatch finish(const PatchMesh& rough, const FinishingOptions& options, co
                      const Progress& progress) {
   Finisher finisher(rough, options, context);
   if (options.remesh || options.fairing) {
-    // A membrane stays close to the rough patch, which meets nothing.
     std::vector<std::optional<SurfaceEnergy>> energies = {options.fairing};
-    if (options.fairing && *options.fairing != SurfaceEnergy::membrane)
-      energies.push_back(SurfaceEnergy::membrane);
+    if (options.fairing && options.fairing != options.calm) energies.push_back(options.calm);
     for (const std::optional<SurfaceEnergy>& energy : energies) {
       try {
         FinishedPatch free = finisher.freely(energy, progress);

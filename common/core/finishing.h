@@ -20,6 +20,9 @@ struct FinishingOptions {
   bool remesh = true;  ///< give it the resolution of the mesh around
   std::optional<SurfaceEnergy> fairing = SurfaceEnergy::normal_variation;  ///< absent: none
   std::optional<double> edge_length;                                       ///< absent: as the mesh around
+  /// What is tried instead where the patch then meets something: a membrane stays close to the rough patch,
+  /// and none at all to its very shape.
+  std::optional<SurfaceEnergy> calm = SurfaceEnergy::membrane;
   /// The route of a patch that could only be left as it came.
   std::string plain_route = "faces of the volumes";
 };

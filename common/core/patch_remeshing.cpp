@@ -283,6 +283,7 @@ void refine(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& 
 void remesh(PatchMesh& patch, std::vector<double>& target, const RemeshOptions& options,
             const Progress& progress) {
   Remesher remesher(patch, target, options);
+  remesher.check_size();
   for (int round = 0; round < options.rounds; ++round) {
     remesher.split_long_edges(progress);
     remesher.collapse_short_edges();

@@ -76,5 +76,27 @@ TEST(FinishingOfPinchedRims, DoubledEdgesDoNotKeepThePatchFromBeingFair) {
   for (const HoleReport& hole : ragged.completion.report.holes) EXPECT_NE(hole.route, "faces of the volumes");
 }
 
+// It would take more than ten million vertices; in guarded steps edges are at most halved in each round.
+TEST(FinishingAtAnyEdgeLength, TakesNoMoreMemoryThanRemeshingIsAllowed) {
+  const TriangleMesh whole = test::icosphere(0);
+  const TriangleMesh mesh = test::without_faces(
+      whole, [&](Index f) { return std::count(whole.triangles[f].begin(), whole.triangles[f].end(), 0u); });
+  const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
+  ASSERT_EQ(loops.size(), 1u);
+  const Rim rim = collect_rim(mesh, build_topology(mesh), loops);
+  std::vector<Vector3> positions = rim.positions;
+  const Index n = static_cast<Index>(positions.size());
+  positions.push_back(whole.vertices[0]);
+  std::vector<Triangle> fan;
+  for (Index v = 0; v < n; ++v) fan.push_back({v, rim.next[v], n});
+  FinishingOptions options;
+  options.edge_length = 4e-4;
+  const auto find = [](const PatchMesh&) { return PatchFault(); };
+  const FinishedPatch finished =
+      finish(PatchMesh(positions, n, fan), options, {rim, InputNeighbourhood(mesh), {}, find});
+  EXPECT_EQ(finished.route, "normal variation in guarded steps");
+  EXPECT_LT(finished.mesh.vertex_count(), 100000u);
+}
+
 }  // namespace
 }  // namespace meshcomplete

@@ -189,6 +189,15 @@ TEST(Refine, TooManyVerticesAreAnError) {
   EXPECT_LE(patch.vertex_count(), 500u);
 }
 
+TEST(Remesh, TooManyVerticesAreAnErrorBeforeAnyIsMade) {
+  PatchMesh patch = fan(ring(12));
+  std::vector<double> target = uniform_target(patch, 0.01);
+  RemeshOptions options;
+  options.max_vertices = 500;
+  EXPECT_THROW(remesh(patch, target, options), CompletionError);
+  EXPECT_EQ(patch.vertex_count(), 12u);
+}
+
 // --- forbidden edges
 // --------------------------------------------------------------------------------------------------
 
