@@ -62,6 +62,8 @@ poisson unlike-halves unlike --from=1,-0.6,0.5 --up=0,0,1 --width=0.95 --edges
 poisson outer-half-torus torus --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
 poisson outer-half-torus guided --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
   --with "$work/guide-tube.off" -p GuideLayer=guide-tube.off -p Fairing=None
+picture "$cache/data/mech-holes-shark.off" "$images/poisson-shark" -f "Close Holes: Poisson-driven" --size=480,360 \
+  --from=-1,-0.3,0.3 --width=1
 # Those are the same as with atomic volumes.
 rm "$images"/poisson-{gap,island,torus,guided}-before.png
 
