@@ -129,6 +129,7 @@ class Refiner {
  private:
   void insert_initial();
   VertexInfo info(Index number, const Vector3& position, bool reached) const;
+  bool in_ball(const CellHandle& cell, const Vector3& position) const;
   CellHandle conflicting(const Vector3& position, const CellHandle& near, const CellHandle& other) const;
   VertexHandle insert(const Vector3& position, const CellHandle& near, const CellHandle& other, bool reached,
                       Index on_edge, Index mesh_vertex);
@@ -211,14 +212,17 @@ void Refiner::insert_initial() {
   for (const auto& [a, b] : options_.protected_edges) chains_.push_back({handle_of_[a], handle_of_[b]});
 }
 
+bool Refiner::in_ball(const CellHandle& cell, const Vector3& position) const {
+  return !triangulation_.is_infinite(cell) &&
+         triangulation_.side_of_sphere(cell, point_of(position)) == CGAL::ON_BOUNDED_SIDE;
+}
+
 // A cell with the position in its ball; null when there is none because a vertex is there.
 CellHandle Refiner::conflicting(const Vector3& position, const CellHandle& near,
                                 const CellHandle& other) const {
   const Point p = point_of(position);
   for (const CellHandle& cell : {near, other})
-    if (cell != CellHandle() && !triangulation_.is_infinite(cell) &&
-        triangulation_.side_of_sphere(cell, p) == CGAL::ON_BOUNDED_SIDE)
-      return cell;
+    if (cell != CellHandle() && in_ball(cell, position)) return cell;
   Triangulation::Locate_type type;
   int i, j;
   const CellHandle found = triangulation_.locate(p, type, i, j, near);
@@ -421,6 +425,7 @@ bool Refiner::refine(const QueuedFacet& facet) {
   return false;
 }
 
+// Not where a centre is so inexact that the facet would stay: there would be no end.
 bool Refiner::refine_at(const QueuedFacet& facet, const Vector3& at) {
   const CellHandle other = facet.cell->neighbor(facet.corner);
   const Vector3 stored = as_stored(at);
@@ -435,6 +440,7 @@ bool Refiner::refine_at(const QueuedFacet& facet, const Vector3& at) {
       if (protect) return false;
     }
   }
+  if (!in_ball(facet.cell, stored) && !in_ball(other, stored)) return false;
   return insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none) !=
          VertexHandle();
 }
