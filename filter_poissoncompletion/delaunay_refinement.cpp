@@ -129,6 +129,7 @@ class Refiner {
  private:
   void insert_initial();
   VertexInfo info(Index number, const Vector3& position, bool reached) const;
+  bool in_ball(const CellHandle& cell, const Vector3& position) const;
   CellHandle conflicting(const Vector3& position, const CellHandle& near, const CellHandle& other) const;
   VertexHandle insert(const Vector3& position, const CellHandle& near, const CellHandle& other, bool reached,
                       Index on_edge, Index mesh_vertex);
@@ -141,12 +142,15 @@ class Refiner {
   void evaluate_all();
   void stamp(const CellHandle& cell);
   void queue_facets_of(const CellHandle& cell);
+  std::optional<double> size_of(const CellHandle& cell, int corner) const;
   void consider(const CellHandle& cell, int corner);
+  void consider_crossed_twice(const CellHandle& cell, int corner);
   Vector3 outwards(const CellHandle& cell, int corner) const;
   Vector3 slope(const Vector3& at, double step) const;
   std::optional<Vector3> surface_centre(const CellHandle& cell, int corner) const;
   void refine_queue();
-  void refine(const QueuedFacet& facet);
+  bool refine(const QueuedFacet& facet);
+  bool refine_at(const QueuedFacet& facet, const Vector3& at);
   bool refine_non_manifold_places();
   DelaunayComplex complex() const;
   bool inside(const CellHandle& cell) const { return cell->info().value < 0; }
@@ -208,14 +212,17 @@ void Refiner::insert_initial() {
   for (const auto& [a, b] : options_.protected_edges) chains_.push_back({handle_of_[a], handle_of_[b]});
 }
 
+bool Refiner::in_ball(const CellHandle& cell, const Vector3& position) const {
+  return !triangulation_.is_infinite(cell) &&
+         triangulation_.side_of_sphere(cell, point_of(position)) == CGAL::ON_BOUNDED_SIDE;
+}
+
 // A cell with the position in its ball; null when there is none because a vertex is there.
 CellHandle Refiner::conflicting(const Vector3& position, const CellHandle& near,
                                 const CellHandle& other) const {
   const Point p = point_of(position);
   for (const CellHandle& cell : {near, other})
-    if (cell != CellHandle() && !triangulation_.is_infinite(cell) &&
-        triangulation_.side_of_sphere(cell, p) == CGAL::ON_BOUNDED_SIDE)
-      return cell;
+    if (cell != CellHandle() && in_ball(cell, position)) return cell;
   Triangulation::Locate_type type;
   int i, j;
   const CellHandle found = triangulation_.locate(p, type, i, j, near);
@@ -332,23 +339,45 @@ void Refiner::evaluate_all() {
 void Refiner::queue_facets_of(const CellHandle& cell) {
   for (int corner = 0; corner < 4; ++corner) {
     const CellHandle other = cell->neighbor(corner);
-    if (other->info().stamp < cell->info().stamp && inside(cell) != inside(other)) consider(cell, corner);
+    if (other->info().stamp > cell->info().stamp) continue;
+    if (inside(cell) != inside(other))
+      consider(cell, corner);
+    else if (options_.around)
+      consider_crossed_twice(cell, corner);
   }
 }
 
-void Refiner::consider(const CellHandle& cell, int corner) {
+// The target edge length at a facet; nothing if it is not to be refined.
+std::optional<double> Refiner::size_of(const CellHandle& cell, int corner) const {
   bool reached = false;
   double size = 0;
   for (int k = 0; k < 4; ++k) {
     if (k == corner) continue;
-    if (triangulation_.is_infinite(cell->vertex(k))) return;
+    if (triangulation_.is_infinite(cell->vertex(k))) return std::nullopt;
     reached |= cell->vertex(k)->info().reached;
     size += cell->vertex(k)->info().size / 3;
   }
-  if (!reached) return;
-  const double bad = badness(facet_towards(cell, corner), size, options_.criteria,
+  return reached ? std::optional(size) : std::nullopt;
+}
+
+void Refiner::consider(const CellHandle& cell, int corner) {
+  const std::optional<double> size = size_of(cell, corner);
+  if (!size) return;
+  const double bad = badness(facet_towards(cell, corner), *size, options_.criteria,
                              [&] { return surface_centre(cell, corner); });
   if (bad > 0) queue_.push({bad, cell->info().stamp, cell->neighbor(corner)->info().stamp, cell, corner});
+}
+
+// A large facet whose axis meets the surface twice: both sides of a wall, one of which has no points yet.
+void Refiner::consider_crossed_twice(const CellHandle& cell, int corner) {
+  const std::optional<double> size = size_of(cell, corner);
+  const CellHandle other = cell->neighbor(corner);
+  if (!size || !cell->info().in_box || !other->info().in_box) return;
+  const std::array<Vector3, 3> facet = facet_towards(cell, corner);
+  const double bad = length_ratio(facet, *size, options_.criteria);
+  if (bad <= 1) return;
+  const double there = function_.value(axis_foot(facet));
+  if ((there < 0) != inside(cell)) queue_.push({bad, cell->info().stamp, other->info().stamp, cell, corner});
 }
 
 // Where the surface crosses the line between the centres of the facet's cells.
@@ -379,11 +408,27 @@ Vector3 Refiner::outwards(const CellHandle& cell, int corner) const {
   return inside(cell) ? Vector3(-normal) : normal;
 }
 
-void Refiner::refine(const QueuedFacet& facet) {
+// Whether that made any difference.
+bool Refiner::refine(const QueuedFacet& facet) {
   const CellHandle other = facet.cell->neighbor(facet.corner);
-  const std::optional<Vector3> at = surface_centre(facet.cell, facet.corner);
-  if (!at) return;
-  const Vector3 stored = as_stored(*at);
+  if (inside(facet.cell) != inside(other)) {
+    const std::optional<Vector3> at = surface_centre(facet.cell, facet.corner);
+    return at && refine_at(facet, *at);
+  }
+  const Vector3 foot = axis_foot(facet_towards(facet.cell, facet.corner));
+  const double tolerance = crossing_tolerance * facet.cell->vertex((facet.corner + 1) % 4)->info().size;
+  const Vector3 centres[] = {facet.cell->info().centre, other->info().centre};
+  for (const Vector3& centre : centres) {
+    const std::optional<Vector3> at = crossing(function_, centre, foot, tolerance);
+    if (at && refine_at(facet, *at)) return true;
+  }
+  return false;
+}
+
+// Not where a centre is so inexact that the facet would stay: there would be no end.
+bool Refiner::refine_at(const QueuedFacet& facet, const Vector3& at) {
+  const CellHandle other = facet.cell->neighbor(facet.corner);
+  const Vector3 stored = as_stored(at);
   if (options_.around) {
     const Cushion& cushion = options_.around->cushion;
     const std::optional<Cushion::Nearest> nearest = cushion.nearest(stored);
@@ -391,11 +436,13 @@ void Refiner::refine(const QueuedFacet& facet) {
       const double size = options_.criteria.edge_length(stored);
       const bool protect = cushion.reaches(*nearest, slope(stored, slope_step * size));
       const bool near = protect || nearest->distance < mesh_in_sight * size;
-      if (near && insert_mesh_vertex(*nearest, stored, facet.cell, other)) return;
-      if (protect) return;
+      if (near && insert_mesh_vertex(*nearest, stored, facet.cell, other)) return true;
+      if (protect) return false;
     }
   }
-  insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none);
+  if (!in_ball(facet.cell, stored) && !in_ball(other, stored)) return false;
+  return insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none) !=
+         VertexHandle();
 }
 
 // What the refinement has come near to has to be there in its own resolution, or the surface is taken for

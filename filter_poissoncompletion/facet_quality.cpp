@@ -11,6 +11,16 @@ constexpr double radians = 3.14159265358979323846 / 180;
 
 }  // namespace
 
+double length_ratio(const std::array<Vector3, 3>& p, double size, const RefinementCriteria& criteria) {
+  const double longest = std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+  return longest / (criteria.longest * size);
+}
+
+Vector3 axis_foot(const std::array<Vector3, 3>& p) {
+  const Vector3 a = p[1] - p[0], b = p[2] - p[0], normal = a.cross(b);
+  return p[0] + (a.squaredNorm() * b - b.squaredNorm() * a).cross(normal) / (2 * normal.squaredNorm());
+}
+
 double badness(const std::array<Vector3, 3>& p, double size, const RefinementCriteria& criteria,
                const std::function<std::optional<Vector3>()>& surface_centre) {
   std::array<double, 3> side;

@@ -29,4 +29,11 @@ struct RefinementCriteria {
 double badness(const std::array<Vector3, 3>& facet, double size, const RefinementCriteria& criteria,
                const std::function<std::optional<Vector3>()>& surface_centre);
 
+/// The longest edge in parts of the longest that is allowed.
+double length_ratio(const std::array<Vector3, 3>& facet, double size, const RefinementCriteria& criteria);
+
+/// The centre of the circle through a facet's corners, where its plane meets its axis. Not finite for corners
+/// on one line.
+Vector3 axis_foot(const std::array<Vector3, 3>& facet);
+
 }  // namespace meshcomplete

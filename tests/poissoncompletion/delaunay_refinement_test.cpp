@@ -153,15 +153,16 @@ TEST(DelaunayRefinement, BringsInTheMeshThatItComesNear) {
   EXPECT_GT(brought, 5u);
 }
 
-// Two edges that cross at a distance cannot both be edges undivided.
+// Other points round the middle of an edge keep it from being one undivided.
 TEST(DelaunayRefinement, ProtectedEdgesAreThere) {
   const test::Oracle oracle = test::sphere_oracle(8);
   std::vector<Vector3> points = test::icosphere(1, 8).vertices;
   const Index first = static_cast<Index>(points.size());
-  for (const Vector3& p : {Vector3(-2, 0, 0), Vector3(2, 0, 0), Vector3(0, -2, 0.25), Vector3(0, 2, 0.25)})
+  for (const Vector3& p : {Vector3(-2, 0, 0), Vector3(2, 0, 0), Vector3(0, 0.1, 0), Vector3(0, -0.1, 0.1),
+                           Vector3(0, -0.1, -0.1)})
     points.push_back(p);
   RefinementOptions options = uniform(16);
-  options.protected_edges = {{first, first + 1}, {first + 2, first + 3}};
+  options.protected_edges = {{first, first + 1}};
   const DelaunayComplex complex = refine_delaunay(oracle, points, options);
   EXPECT_TRUE(complex.lost_edges.empty());
   std::set<test::Edge> edges;
@@ -170,7 +171,7 @@ TEST(DelaunayRefinement, ProtectedEdgesAreThere) {
       for (Index b : cell)
         if (a < b) edges.emplace(a, b);
   std::size_t divided = 0;
-  for (Index edge = 0; edge < 2; ++edge) {
+  for (Index edge = 0; edge < 1; ++edge) {
     const auto [a, b] = options.protected_edges[edge];
     std::map<double, Index> chain = {{0.0, a}, {4.0, b}};
     for (Index v = 0; v < complex.vertices.size(); ++v)
