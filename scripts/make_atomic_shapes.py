@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes shapes whose holes have several rims: what atomic volumes close and a disk for each rim does not.
+"""Writes shapes whose holes have several rims: what global filters close and a disk for each rim does not.
 
     scripts/make_atomic_shapes.py SHAPE FILE.off        one of the shapes below
     scripts/make_atomic_shapes.py gap FILE.off MESH.off AXIS FROM TO
@@ -10,6 +10,8 @@ outer-half-torus a fat torus without the half that is nearer to its axis (figure
 inside-the-ring  points in the middle of that torus: a layer for OutsideLayer
 island           a sphere without a ring round its pole: the cap is left, and touches nothing
 broken-ring      a torus without a third of its turn
+guide-tube       a tube in the middle of the outer half torus, facing its axis: a layer for GuideLayer
+unlike-halves    the lower half of a sphere in small triangles and a cap of it in large ones, a band apart
 """
 
 import math
@@ -47,12 +49,17 @@ def together(*meshes):
     return points, faces
 
 
-def with_pole(mesh):
+def with_pole(mesh, around=AROUND):
     """Closes the first row of a surface of revolution with one vertex more."""
     points, faces = mesh
     top = len(points)
     height = points[0][2] + 0.0005
-    return points + [(0.0, 0.0, height)], faces + [(top, j, (j + 1) % AROUND) for j in range(AROUND)]
+    return points + [(0.0, 0.0, height)], faces + [(top, j, (j + 1) % around) for j in range(around)]
+
+
+def upside_down(mesh):
+    points, faces = mesh
+    return [(x, -y, -z) for x, y, z in points], faces
 
 
 def pierced_sphere():
@@ -72,13 +79,21 @@ def inside_the_ring():
 def island():
     cap = with_pole(revolve(arc(2, 18, 8)))
     # The other way round, so that both poles are closed by the same function.
-    points, faces = with_pole(revolve(arc(2, 138, 68)))
-    return together(cap, ([(x, -y, -z) for x, y, z in points], faces))
+    return together(cap, upside_down(with_pole(revolve(arc(2, 138, 68)))))
 
 
 def broken_ring():
     profile = arc(0, 360, 32, radius=0.35, centre=1.0)[:-1]
     return revolve(profile, keep=lambda i, j: j >= AROUND // 3, closed=True)
+
+
+def guide_tube():
+    return revolve([(0.4, -0.3 + 0.1 * i) for i in range(7)], around=32)
+
+
+def unlike_halves():
+    coarse = with_pole(revolve(arc(2, 56, 7), around=24), around=24)
+    return together(coarse, upside_down(with_pole(revolve(arc(2, 96, 47)))))
 
 
 def without_slab(path, axis, low, high):
@@ -99,6 +114,8 @@ SHAPES = {
     "inside-the-ring": inside_the_ring,
     "island": island,
     "broken-ring": broken_ring,
+    "guide-tube": guide_tube,
+    "unlike-halves": unlike_halves,
 }
 
 

@@ -18,7 +18,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$top/scripts/fetch_demo.sh" elephant-with-holes.off mech-holes-shark.off armadillo.off
 "$top/scripts/make_spiral_hole.py" "$work/spiral.off"
-for shape in pierced-sphere outer-half-torus inside-the-ring island; do
+for shape in pierced-sphere outer-half-torus inside-the-ring island guide-tube unlike-halves; do
   "$top/scripts/make_atomic_shapes.py" "$shape" "$work/$shape.off"
 done
 "$top/scripts/make_atomic_shapes.py" gap "$work/gap.off" "$cache/data/armadillo.off" y -28 -22
@@ -47,5 +47,24 @@ atomic outer-half-torus torus -p Weight=Area --from=1,-0.6,1.1 --up=0,0,1 --widt
 atomic outer-half-torus ring -p Weight=Area --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
   --with "$work/inside-the-ring.off" -p OutsideLayer=inside-the-ring.off
 rm "$images/atomic-ring-before.png"
+
+# Driven by a Poisson reconstruction, likewise.
+poisson() {
+  local shape=$1 name=$2
+  shift 2
+  picture "$work/$shape.off" "$images/poisson-$name" -f "Close Holes: Poisson-driven" --size=480,360 "$@"
+}
+
+poisson gap gap --from=0.35,0.12,-1 --width=0.55 --at=0,-20,0
+poisson gap gap-close --from=0.35,0.12,-1 --width=0.17 --at=24,-25,15 --edges
+poisson island island --from=1,-0.6,1.1 --up=0,0,1 --width=0.8
+poisson unlike-halves unlike --from=1,-0.6,0.5 --up=0,0,1 --width=0.95 --edges
+poisson outer-half-torus torus --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
+poisson outer-half-torus guided --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
+  --with "$work/guide-tube.off" -p GuideLayer=guide-tube.off -p Fairing=None
+picture "$cache/data/mech-holes-shark.off" "$images/poisson-shark" -f "Close Holes: Poisson-driven" --size=480,360 \
+  --from=-1,-0.3,0.3 --width=1
+# Those are the same as with atomic volumes.
+rm "$images"/poisson-{gap,island,torus,guided}-before.png
 
 [ $# -eq 0 ] || picture "$1" "$images/bunny" --from=0.1,-1,0.15 --up=0,0,1

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import pathlib
 import shutil
 import struct
 import subprocess
@@ -11,6 +12,7 @@ import unittest
 
 PROGRAM = os.environ["MESHCOMPLETE"]
 PLUGINS = os.environ["MESHCOMPLETE_TEST_PLUGINS"]
+CHECK = "Check Completion"
 
 
 def as_float(value):
@@ -55,6 +57,30 @@ def sphere(rings=12, segments=16, hole=True, origin=(0.0, 0.0, 0.0), scale=1.0):
                 continue
             faces += [(at(r, s), at(r + 1, s), at(r + 1, s + 1)), (at(r, s), at(r + 1, s + 1), at(r, s + 1))]
         faces.append((at(rings - 1, s), len(vertices) - 1, at(rings - 1, s + 1)))
+    return vertices, faces
+
+
+def without(vertices, faces, leave_out):
+    """The faces whose mean height is not in an interval of `leave_out`."""
+    def height(face):
+        return sum(vertices[v][2] for v in face) / 3
+    return [face for face in faces if not any(low < height(face) < high for low, high in leave_out)]
+
+
+def outer_half_torus(around=48, across=16, small=0.6):
+    """The outer half of a torus of radius 1: two disks close it with less area than a ring."""
+    vertices = []
+    for i in range(around):
+        turn = 2 * math.pi * i / around
+        for j in range(across + 1):
+            angle = math.pi * (j / across - 0.5)
+            r = 1 + small * math.cos(angle)
+            vertices.append((r * math.cos(turn), r * math.sin(turn), small * math.sin(angle)))
+    faces = []
+    for i in range(around):
+        for j in range(across):
+            a, b = i * (across + 1) + j, (i + 1) % around * (across + 1) + j
+            faces += [(a, b, b + 1), (a, b + 1, a + 1)]
     return vertices, faces
 
 
@@ -206,3 +232,40 @@ class RunnerCase(unittest.TestCase):
         vertices, faces = sphere(**options)
         write_ply(self.path(name), vertices, faces)
         return vertices, faces
+
+
+class ClosingCase(RunnerCase):
+    """Tests of one filter that closes holes: `filter` is its name."""
+
+    def write(self, name, vertices, faces):
+        used = sorted({v for face in faces for v in face})
+        number = {v: i for i, v in enumerate(used)}
+        write_ply(self.path(name), [vertices[v] for v in used], [tuple(number[v] for v in face) for face in faces])
+
+    def close(self, *parameters, inputs=("in.ply",), code=0):
+        """Closes the holes; returns what Check Completion and the report say, and the mesh."""
+        options = ["-p", *parameters] if parameters else []
+        result = self.check(code, "-i", *inputs, "-f", self.filter, *options, "-f", CHECK, "-o", "out.ply", "--report",
+                            "report.json")
+        self.log = result.stdout
+        self.assertIn("Self-intersecting pairs of faces: 0", self.log)
+        return Ply(self.path("out.ply"))
+
+    def said(self, name):
+        """A number that Check Completion gave."""
+        return int(next(line for line in self.log.split("\n") if line.startswith(name + ":")).split()[-1])
+
+    def components(self):
+        return self.said("Connected components")
+
+    def refused(self, code, *parameters, inputs=("in.ply",)):
+        """The filter does not run: nothing is written, and the inputs stay as they are. Returns the message."""
+        def contents():
+            return [pathlib.Path(self.path(name)).read_bytes() for name in inputs]
+        if os.path.exists(self.path("out.ply")):
+            os.remove(self.path("out.ply"))
+        before = contents()
+        result = self.check(code, "-i", *inputs, "-f", self.filter, "-p", *parameters, "-o", "out.ply")
+        self.assertFalse(os.path.exists(self.path("out.ply")), result.stderr)
+        self.assertEqual(contents(), before)
+        return result.stderr

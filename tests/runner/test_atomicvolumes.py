@@ -7,17 +7,9 @@ import subprocess
 import time
 import unittest
 
-from runner_case import Ply, RunnerCase, bits, sphere, write_ply
+from runner_case import CHECK, ClosingCase, Ply, bits, outer_half_torus, sphere, without, write_ply
 
 FILTER = "Close Holes: Atomic Volumes"
-CHECK = "Check Completion"
-
-
-def without(vertices, faces, leave_out):
-    """The faces whose mean height is not in an interval of `leave_out`."""
-    def height(face):
-        return sum(vertices[v][2] for v in face) / 3
-    return [face for face in faces if not any(low < height(face) < high for low, high in leave_out)]
 
 
 def volume(ply):
@@ -43,26 +35,8 @@ def write_scan(path, camera, points):
         file.write("\n".join(header + [" ".join(map(str, point)) for point in points]) + "\n")
 
 
-class Case(RunnerCase):
-    def write(self, name, vertices, faces):
-        used = sorted({v for face in faces for v in face})
-        number = {v: i for i, v in enumerate(used)}
-        write_ply(self.path(name), [vertices[v] for v in used], [tuple(number[v] for v in face) for face in faces])
-
-    def close(self, *parameters, inputs=("in.ply",), code=0):
-        """Closes the holes; returns what Check Completion and the report say, and the mesh."""
-        options = ["-p", *parameters] if parameters else []
-        result = self.check(code, "-i", *inputs, "-f", FILTER, *options, "-f", CHECK, "-o", "out.ply", "--report",
-                            "report.json")
-        self.log = result.stdout
-        self.assertIn("Self-intersecting pairs of faces: 0", self.log)
-        return Ply(self.path("out.ply"))
-
-    def components(self):
-        return int(next(line for line in self.log.split("\n") if line.startswith("Connected components:")).split()[-1])
-
-    def refused(self, code, *parameters, inputs=("in.ply",)):
-        return self.check(code, "-i", *inputs, "-f", FILTER, "-p", *parameters, "-o", "out.ply").stderr
+class Case(ClosingCase):
+    filter = FILTER
 
 
 class Holes(Case):
@@ -135,23 +109,6 @@ class Holes(Case):
         self.assertGreater(counts[1], 1.3 * counts[0])
 
 
-def outer_half_torus(around=48, across=16, small=0.6):
-    """The outer half of a torus of radius 1: two disks close it with less area than a ring."""
-    vertices = []
-    for i in range(around):
-        turn = 2 * math.pi * i / around
-        for j in range(across + 1):
-            angle = math.pi * (j / across - 0.5)
-            r = 1 + small * math.cos(angle)
-            vertices.append((r * math.cos(turn), r * math.sin(turn), small * math.sin(angle)))
-    faces = []
-    for i in range(around):
-        for j in range(across):
-            a, b = i * (across + 1) + j, (i + 1) % around * (across + 1) + j
-            faces += [(a, b, b + 1), (a, b + 1, a + 1)]
-    return vertices, faces
-
-
 class DepthLimit(Case):
     """One rim edge is so short that cubes at the limit hold both of its ends."""
 
@@ -210,7 +167,7 @@ class OtherLayers(Case):
         self.close(*parameters, inputs=inputs or self.inputs)
         self.assertIn("Watertight: yes", self.log)
         self.assertEqual(self.components(), 1)
-        return int(next(line for line in self.log.split("\n") if line.startswith("Genus:")).split()[-1])
+        return self.said("Genus")
 
     def test_outside_points(self):
         self.assertEqual(self.genus(), 0)

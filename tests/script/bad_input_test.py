@@ -127,5 +127,9 @@ class BadInputOfAtomicVolumes(BadInput):
             self.assert_refused(run, "NodeBudget")
 
 
+class BadInputOfPoissonDriven(BadInput):
+    filter = "Close Holes: Poisson-driven"
+
+
 if __name__ == "__main__":
     sys.exit(unittest.main(verbosity=2))

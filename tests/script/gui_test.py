@@ -20,6 +20,7 @@ from meshlab import BUILD, STAGED
 PICTURES = BUILD / "gui-test"
 CURVE_UNFOLDING = "Close Holes: Curve Unfolding"
 ATOMIC_VOLUMES = "Close Holes: Atomic Volumes"
+POISSON_DRIVEN = "Close Holes: Poisson-driven"
 
 
 class Screen:
@@ -168,6 +169,9 @@ class Window(unittest.TestCase):
 
     def test_atomic_volumes(self):
         self.close_holes(ATOMIC_VOLUMES, "atomic-volumes")
+
+    def test_poisson_driven(self):
+        self.close_holes(POISSON_DRIVEN, "poisson-driven")
 
     def test_a_failure_is_a_message(self):
         mesh = self.home / "cloud.ply"

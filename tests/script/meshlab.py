@@ -32,6 +32,12 @@ FILTERS = {
         ("RichInt", "SymmetryFold", "2"), ("RichFloat", "SymmetryPrice", "0.5"), ("RichEnum", "Smoothing", "1"),
         ("RichInt", "SmoothingIterations", "5"), ("RichBool", "MovingCentres", "false"), ("RichBool", "Remesh", "true"),
         ("RichEnum", "Fairing", "2"), ("RichAbsPerc", "EdgeLength", "0")],
+    "Close Holes: Poisson-driven": CLOSE_HOLES + [
+        ("RichEnum", "GuideLayer", "0"), ("RichBool", "GuideVisible", "false"), ("RichInt", "MinDepth", "5"),
+        ("RichInt", "MaxDepth", "0"), ("RichFloat", "Scale", "2.2"), ("RichEnum", "Boundary", "0"),
+        ("RichFloat", "Screening", "16"), ("RichFloat", "Samples", "4"), ("RichEnum", "Interpolation", "0"),
+        ("RichInt", "RemoveRings", "0"), ("RichAbsPerc", "EdgeLength", "0"), ("RichInt", "Rings", "3"),
+        ("RichAbsPerc", "CushionRadius", "0"), ("RichEnum", "Fairing", "3")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select Border": [],

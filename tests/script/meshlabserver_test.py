@@ -1,4 +1,5 @@
 """Our filters in MeshLab's own meshlabserver: holes closed, the input kept bit for bit, messages in the log."""
+import math
 import re
 import sys
 import unittest
@@ -150,6 +151,59 @@ class AtomicVolumes(MeshLabTest):
                                 ({"CarveLayers": "true"}, "no other visible layer has a camera")):
             with self.subTest(**values):
                 self.assert_refused(self.close(mesh, **values), message)
+
+
+class PoissonDriven(MeshLabTest):
+    filter = "Close Holes: Poisson-driven"
+
+    def test_closes_both_holes(self):
+        before, after, run = self.assert_closes_the_band()
+        self.assertGreater(len(after.positions), len(before.positions), "patches are refined")
+        self.assertRegex(run.log, r"Figures: samples \d+, .*octree depth \d+, .*Delaunay vertices \d+")
+
+    def test_guides(self):
+        """A tube that faces its axis, through both holes of the band: they become one, and the band a ring."""
+        vertices, faces = mesh_files.band()
+        narrow = [(0.2 * x / math.hypot(x, y), 0.2 * y / math.hypot(x, y), 0.8 * z) for x, y, z in vertices]
+        guide = self.folder / "guide.ply"
+        mesh_files.write_ply(guide, narrow, [face[::-1] for face in faces])
+        for values in ({"GuideLayer": 1}, {"GuideVisible": "true"}):
+            with self.subTest(**values):
+                run = self.close([guide, self.band()], Fairing=0, **values)
+                self.assertTrue(run.saved, run)
+                self.assertTrue(mesh_files.is_closed_manifold(mesh_files.Ply(run.output).faces), run)
+                self.assertRegex(run.log, r"Hole 1 \(48 edges.*: closed")
+                self.assertIn("Closed 1 of 1 hole.", run.log)
+        self.assertIn('Guide: the layer "guide.ply"', run.log)
+        self.assert_refused(self.close([guide, self.band()], GuideLayer=2), "the layer that the filter works on")
+        self.assert_refused(self.close(self.band(), GuideLayer=7), "there is no layer 7")
+
+    def test_every_choice(self):
+        mesh = self.band(segments=16, rings=5)
+        before = self.untouched(mesh)
+        for values in ({"Boundary": 1}, {"Interpolation": 1}, {"Fairing": 0}, {"Fairing": 1}, {"Fairing": 2}):
+            with self.subTest(**values):
+                run = self.close(mesh, **values)
+                after = self.assert_kept(before, run)
+                self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+
+    def test_parameters_out_of_range_are_refused(self):
+        mesh = self.band()
+        points = self.folder / "points.ply"
+        mesh_files.write_ply(points, [(0.1, 0.0, 0.0)], [])
+        for values, message in (({"MinDepth": 0}, 'Parameter "MinDepth" must lie between 1 and 8 levels; it is 0.'),
+                                ({"MaxDepth": 4}, "MaxDepth must lie between MinDepth and 16, or be 0"),
+                                ({"Scale": 1}, "Scale must lie above 1 and be at most 10."),
+                                ({"Screening": 0}, 'Parameter "Screening" must be greater than 0'),
+                                ({"Samples": -1}, 'Parameter "Samples" must be greater than 0'),
+                                ({"Rings": 101}, 'Parameter "Rings" must lie between 1 and 100 rings; it is 101.'),
+                                ({"EdgeLength": -0.5}, 'Parameter "EdgeLength" must be at least 0'),
+                                ({"Boundary": 2}, 'Parameter "Boundary": 2 is not one of its 2 choices'),
+                                ({"Fairing": 4}, 'Parameter "Fairing": 4 is not one of its 4 choices'),
+                                ({"GuideVisible": "true"}, "there is no other visible layer")):
+            with self.subTest(**values):
+                self.assert_refused(self.close(mesh, **values), message)
+        self.assert_refused(self.close([points, mesh], GuideLayer=1), "points that have no normals")
 
 
 class CheckCompletion(MeshLabTest):
