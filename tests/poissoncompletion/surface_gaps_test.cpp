@@ -98,7 +98,16 @@ TEST_F(SurfaceGaps, ASmallHoleWithoutAnySurface) {
   EXPECT_TRUE(closed());
 }
 
-// Three faces of a tetrahedron over a rim of which two corners are joined by the mesh already.
+// What is missing then is no gap.
+TEST_F(SurfaceGaps, AWideHoleWithoutAnySurfaceIsLeft) {
+  const TriangleMesh wide = test::sphere_with_hole(4, 0.7);
+  SeparatingSurface nothing;
+  const SurfaceGapFigures figures = close_gaps(nothing, wide, build_topology(wide).boundary_half_edges);
+  EXPECT_EQ(figures.closed, 0u);
+  EXPECT_EQ(figures.left, 1u);
+  EXPECT_TRUE(nothing.triangles.empty());
+}
+
 TEST_F(SurfaceGaps, NoEdgeIsMadeTwice) {
   // A strip of two triangles folded along its diagonal: the gap's other diagonal would be the mesh's own.
   TriangleMesh fold;
