@@ -48,14 +48,16 @@ std::vector<ParameterDeclaration> refinement_parameters() {
                        "Nearer than this to the mesh no vertex is put. 0: a little more than the edge "
                        "length. A percentage is of the bounding box's diagonal."),
       choice_parameter("Fairing", "Fairing",
-                       "What is done to the new surface in the end. None: it is the reconstruction's. Thin "
-                       "plate, membrane, normal variation: least bending, area, change of the normals.",
-                       {"None", "Thin plate", "Membrane", "Normal variation"}, 3)};
+                       "What the new surface minimises in the end. Thin plate: bending. Membrane: area. "
+                       "Normal variation: the change of the normals. None: it stays the reconstruction's. "
+                       "Automatic: normal variation, and none where guides shape it.",
+                       {"Automatic", "None", "Thin plate", "Membrane", "Normal variation"})};
 }
 
 PoissonCompletionOptions options_from(const ParameterValues& values) {
-  constexpr std::optional<SurfaceEnergy> energies[] = {
-      std::nullopt, SurfaceEnergy::thin_plate, SurfaceEnergy::membrane, SurfaceEnergy::normal_variation};
+  constexpr std::optional<SurfaceEnergy> energies[] = {SurfaceEnergy::normal_variation, std::nullopt,
+                                                       SurfaceEnergy::thin_plate, SurfaceEnergy::membrane,
+                                                       SurfaceEnergy::normal_variation};
   PoissonCompletionOptions options;
   options.oracle = oracle_options(values);
   if (values.real("EdgeLength") > 0) options.refinement.edge_length = values.real("EdgeLength");
@@ -86,6 +88,9 @@ void apply_closing(FilterRun& run) {
   PoissonCompletionOptions options = options_from(run.parameters);
   std::vector<std::string> notes;
   options.guides = read_guides(run, notes);
+  // A fair surface has forgotten what guides have asked for.
+  if (!options.guides.empty() && run.parameters.choice("Fairing") == 0)
+    options.refinement.finishing.fairing.reset();
   close_holes(run, [&](const TriangleMesh& mesh, const MeshSelection& selection,
                        const HoleSelectionOptions& holes, const Progress& progress) {
     options.holes = holes;
@@ -116,8 +121,8 @@ FilterDeclaration closing_filter() {
   filter.parameters = close_holes_parameters();
   const ParameterDeclaration max_depth =
       integer_parameter("MaxDepth", "Maximum depth",
-                        "How often it is halved near the holes, up to 16. 0: until cubes are as small as the "
-                        "edges at the holes, and as a third of thin walls.",
+                        "Near the holes it is halved until cubes are as small as the edges there, and as a "
+                        "third of thin walls; but at most so often, up to 16. 0: 14 times.",
                         "levels", 0, 0, 16);
   for (const auto& more : {guide_parameters(), oracle_parameters(max_depth, 2.2, 0), refinement_parameters()})
     filter.parameters.insert(filter.parameters.end(), more.begin(), more.end());

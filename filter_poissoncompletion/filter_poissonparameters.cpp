@@ -18,8 +18,7 @@ std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_dep
                            "Free: a surface may leave the cube.",
                            {"Solid", "Free"}, boundary),
           positive_parameter("Screening", "Screening",
-                             "How closely the reconstruction goes through the mesh. Less bridges wider gaps.",
-                             "", 16),
+                             "How closely the reconstruction goes through the mesh.", "", 16),
           positive_parameter("Samples", "Samples", "Points taken from the mesh.", "per face of a cube", 4),
           choice_parameter("Interpolation", "Interpolation",
                            "Of the reconstruction between corners of cubes. Trilinear: smooth and fast. "

@@ -163,7 +163,9 @@ void minimize_thin_plate(TriangleMesh& surface, const Numbering& numbering, Lapl
                          Cholesky& solver) {
   const Laplacian laplacian = make_laplacian(surface, weights);
   const SparseMatrix inner = laplacian.matrix * numbering.pick_free;
-  const SparseMatrix weighted = laplacian.mass.cwiseInverse().asDiagonal() * inner;
+  // Kept in a vector: Eigen evaluates an expression anew for every column.
+  const Eigen::VectorXd inverse_mass = laplacian.mass.cwiseInverse();
+  const SparseMatrix weighted = inverse_mass.asDiagonal() * inner;
   const SparseMatrix system = inner.transpose() * weighted;
   Coordinates x = coordinates_of(surface);
   for (Index v : numbering.free_vertices) x.row(v).setZero();

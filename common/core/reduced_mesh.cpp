@@ -5,10 +5,16 @@
 #include <utility>
 
 #include "common/core/boundary_loops.h"
+#include "common/core/error.h"
 #include "common/core/hole_targets.h"
 #include "common/core/mesh_topology.h"
 
 namespace meshcomplete {
+namespace {
+
+constexpr const char* stage = "removing rings of faces";
+
+}  // namespace
 
 ReducedMesh unreduced(const TriangleMesh& mesh, const MeshSelection& selection) {
   ReducedMesh rest{mesh, selection, {}, std::vector<Index>(mesh.triangles.size())};
@@ -63,6 +69,8 @@ ReducedMesh without_rings(const TriangleMesh& mesh, const MeshSelection& selecti
       for (Index v : rest.mesh.triangles[t]) on_rim[v] = 1;
     remove_faces(rest, faces, options.selected_only);
   }
+  if (rest.mesh.triangles.empty() && !mesh.triangles.empty())
+    throw CompletionError(stage, "Removing so many rings of faces leaves nothing of the mesh. Remove fewer.");
   return rest;
 }
 

@@ -26,7 +26,8 @@ void remove_faces(ReducedMesh& rest, const std::vector<Index>& faces, bool selec
 
 /// Takes away `rings` rings of faces round every hole that is to be closed: those with a corner on its rim,
 /// then those with a corner on what has become the rim there. Source: Centin, Pezzotti and Signoroni (2015),
-/// section 3.1, "deleting an n-ring of the boundary". Throws as `select_holes`. Cost: O(faces) a ring.
+/// section 3.1, "deleting an n-ring of the boundary". Throws CompletionError when that leaves
+/// nothing, and as `select_holes`. Cost: O(faces) a ring.
 ReducedMesh without_rings(const TriangleMesh& mesh, const MeshSelection& selection,
                           const HoleSelectionOptions& options, int rings,
                           const Progress& progress = Progress());

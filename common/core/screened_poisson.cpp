@@ -22,8 +22,9 @@ using Values = std::vector<double>;
 using Vectors = std::vector<Vector3>;
 using CubeMatrix = std::array<double, 36>;  // symmetric, the upper half by rows
 
-constexpr std::size_t grain = 1024;  // blocks or corners in one go of a thread
-constexpr double jump = 0.5;         // of the function to either side of the surface: V has the length 1
+constexpr std::size_t grain = 1024;      // corners or samples in one go of a thread
+constexpr std::size_t block_grain = 64;  // blocks: as much work
+constexpr double jump = 0.5;             // of the function to either side of the surface: V has the length 1
 
 // A number for each child of a block: the same arithmetic for all eight at once.
 using Octet = Eigen::Array<double, 8, 1>;
@@ -156,7 +157,7 @@ std::array<Index, 8> Solver::parent_corners(int depth, Index block) const {
 template <class Body>
 void Solver::for_blocks(const Level& level, const Progress& progress, const Body& body) const {
   for (const std::vector<Index>& group : level.groups)
-    for_each(group.size(), grain, progress, [&](std::size_t i) { body(group[i]); });
+    for_each(group.size(), block_grain, progress, [&](std::size_t i) { body(group[i]); });
 }
 
 // Sets a level's values to those of the coarser level between its corners.
@@ -349,7 +350,7 @@ class LevelEquations {
   template <class Body>
   void each_block(const Progress& progress, const Body& body) const {
     for (const std::vector<Index>& group : level_.groups)
-      for_each(group.size(), grain, progress, [&](std::size_t i) { body(group[i]); });
+      for_each(group.size(), block_grain, progress, [&](std::size_t i) { body(group[i]); });
   }
 
   const Level& level_;

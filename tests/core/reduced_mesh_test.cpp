@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/core/boundary_loops.h"
+#include "common/core/error.h"
 #include "common/core/mesh_topology.h"
 #include "tests/support/meshes.h"
 
@@ -44,6 +45,10 @@ TEST(ReducedMesh, EachRingTakesTheFacesAtTheRim) {
     EXPECT_EQ(rims(rest.mesh), 1u) << rings;
     EXPECT_TRUE(std::is_sorted(rest.removed.begin(), rest.removed.end()));
   }
+}
+
+TEST(ReducedMesh, NothingIsLeft) {
+  EXPECT_THROW(without_rings(test::sphere_with_hole(), {}, {}, 100), CompletionError);
 }
 
 TEST(ReducedMesh, OnlyAtTheHolesThatAreAskedFor) {

@@ -264,7 +264,7 @@ class Guides(Case):
         write_ply(self.path("tube.ply"), *self.tube)
 
     def genus(self, *parameters, inputs=("tube.ply", "in.ply")):
-        after = self.close("Fairing=None", *parameters, inputs=inputs)
+        after = self.close(*parameters, inputs=inputs)
         self.assert_closed()
         self.assert_kept(Ply(self.path("in.ply")), after)
         return self.said("Genus")
@@ -318,7 +318,7 @@ class Messages(Case):
                 ("Screening=0", 2, "greater than 0"), ("Screening=-1", 2, "greater than 0"), ("Samples=0", 2, "greater than 0"),
                 ("RemoveRings=-1", 2, "0 to 100"), ("RemoveRings=101", 2, "0 to 100"), ("Rings=0", 2, "1 to 100"), ("Rings=101", 2, "1 to 100"), ("EdgeLength=-1", 2, "at least 0"),
                 ("CushionRadius=-1", 2, "at least 0"), ("Boundary=2", 2, "0 = Solid, 1 = Free"),
-                ("Interpolation=2", 2, "0 = Trilinear, 1 = Tetrahedral"), ("Fairing=4", 2, "3 = Normal variation"),
+                ("Interpolation=2", 2, "0 = Trilinear, 1 = Tetrahedral"), ("Fairing=5", 2, "4 = Normal variation"),
                 ("MaxHoleEdges=2", 1, "at least 3"), ("Selected=true", 1, "nothing is selected")):
             with self.subTest(parameter):
                 self.assertIn(message, self.refused(code, parameter))
@@ -334,6 +334,45 @@ class Messages(Case):
                      "RemoveRings", "EdgeLength", "Rings", "CushionRadius", "Fairing"):
             self.assertIn(f"\n  {name}\n", text)
         self.assertIn("Marco Centin", text)
+
+
+class Reconstruction(Case):
+    """Surface Reconstruction: Poisson Delaunay, the other filter of the plugin."""
+    filter = "Surface Reconstruction: Poisson Delaunay"
+
+    def test_a_mesh_with_a_hole(self):
+        self.write_fine((0.7, 1.1))
+        flat = len(self.close("MaxDepth=6", "Distance=0.02").triangles)
+        self.assert_closed()
+        self.assertEqual(self.said("Genus"), 0)
+        after = self.close("MaxDepth=6", "Distance=0.002")
+        self.assert_closed()
+        self.assertGreater(len(after.triangles), 2 * flat, "shorter edges are nearer to the surface")
+        for point in after.points:
+            self.assertLess(abs(math.hypot(*point) - 1), 0.06)
+
+    def test_edges_of_one_length(self):
+        self.write_fine()
+        after = self.close("MaxDepth=6", "Adaptive=false", "EdgeLength=0.15")
+        self.assert_closed()
+        lengths = edge_lengths(after, after.triangles)
+        self.assertAlmostEqual(sum(lengths) / len(lengths), 0.15, delta=0.03)
+
+    def test_all_visible_layers(self):
+        self.write("low.ply", self.fine[0], without(*self.fine, ((-0.1, 1.1),)))
+        self.write("high.ply", self.fine[0], without(*self.fine, ((-1.1, 0.1),)))
+        self.close("MaxDepth=6", "VisibleLayers=true", inputs=("low.ply", "high.ply"))
+        self.assert_closed()
+        self.assertEqual(self.said("Genus"), 0)
+
+    def test_bad_input(self):
+        self.write("in.ply", self.fine[0], [])
+        self.assertIn("points that have no normals", self.refused(1, "MaxDepth=6"))
+        self.write_fine()
+        for parameter, code, message in (("Angle=31", 2, "0 to 30"), ("MaxDepth=3", 1, "MaxDepth must lie between MinDepth"),
+                                         ("Scale=1", 1, "Scale must lie above 1"), ("EdgeLength=-1", 2, "EdgeLength")):
+            with self.subTest(parameter):
+                self.assertIn(message, self.refused(code, parameter))
 
 
 class Cancelling(Case):

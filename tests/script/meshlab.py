@@ -37,7 +37,7 @@ FILTERS = {
         ("RichInt", "MaxDepth", "0"), ("RichFloat", "Scale", "2.2"), ("RichEnum", "Boundary", "0"),
         ("RichFloat", "Screening", "16"), ("RichFloat", "Samples", "4"), ("RichEnum", "Interpolation", "0"),
         ("RichInt", "RemoveRings", "0"), ("RichAbsPerc", "EdgeLength", "0"), ("RichInt", "Rings", "3"),
-        ("RichAbsPerc", "CushionRadius", "0"), ("RichEnum", "Fairing", "3")],
+        ("RichAbsPerc", "CushionRadius", "0"), ("RichEnum", "Fairing", "0")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select Border": [],

@@ -169,7 +169,7 @@ class PoissonDriven(MeshLabTest):
         mesh_files.write_ply(guide, narrow, [face[::-1] for face in faces])
         for values in ({"GuideLayer": 1}, {"GuideVisible": "true"}):
             with self.subTest(**values):
-                run = self.close([guide, self.band()], Fairing=0, **values)
+                run = self.close([guide, self.band()], Fairing=1, **values)
                 self.assertTrue(run.saved, run)
                 self.assertTrue(mesh_files.is_closed_manifold(mesh_files.Ply(run.output).faces), run)
                 self.assertRegex(run.log, r"Hole 1 \(48 edges.*: closed")
@@ -181,7 +181,7 @@ class PoissonDriven(MeshLabTest):
     def test_every_choice(self):
         mesh = self.band(segments=16, rings=5)
         before = self.untouched(mesh)
-        for values in ({"Boundary": 1}, {"Interpolation": 1}, {"Fairing": 0}, {"Fairing": 1}, {"Fairing": 2}):
+        for values in ({"Boundary": 1}, {"Interpolation": 1}, {"Fairing": 1}, {"Fairing": 2}, {"Fairing": 3}):
             with self.subTest(**values):
                 run = self.close(mesh, **values)
                 after = self.assert_kept(before, run)
@@ -199,7 +199,7 @@ class PoissonDriven(MeshLabTest):
                                 ({"Rings": 101}, 'Parameter "Rings" must lie between 1 and 100 rings; it is 101.'),
                                 ({"EdgeLength": -0.5}, 'Parameter "EdgeLength" must be at least 0'),
                                 ({"Boundary": 2}, 'Parameter "Boundary": 2 is not one of its 2 choices'),
-                                ({"Fairing": 4}, 'Parameter "Fairing": 4 is not one of its 4 choices'),
+                                ({"Fairing": 5}, 'Parameter "Fairing": 5 is not one of its 5 choices'),
                                 ({"GuideVisible": "true"}, "there is no other visible layer")):
             with self.subTest(**values):
                 self.assert_refused(self.close(mesh, **values), message)
