@@ -10,18 +10,11 @@
 #include "common/core/implicit_function.h"
 #include "common/core/mesh.h"
 #include "common/core/progress.h"
-#include "filter_poissoncompletion/cushion.h"
 #include "filter_poissoncompletion/delaunay_complex.h"
 #include "filter_poissoncompletion/facet_quality.h"
+#include "filter_poissoncompletion/mesh_guard.h"
 
 namespace meshcomplete {
-
-/// The mesh that a refinement leaves alone.
-struct ProtectedMesh {
-  const TriangleMesh& mesh;
-  const Cushion& cushion;             ///< where no point is inserted but vertices of the mesh
-  const std::vector<Index>& initial;  ///< the mesh's vertex at each initial point
-};
 
 struct RefinementOptions {
   RefinementCriteria criteria;
