@@ -182,6 +182,7 @@ void Refiner::insert_initial() {
     points.emplace_back(point_of(at), VertexInfo{i, reached[i] != 0, options_.criteria.edge_length(at)});
     box.extend(at);
   }
+  if (!(box.sizes().maxCoeff() > 0)) throw CompletionError(stage, "No two points of the surface were found.");
   const Vector3 middle = box.center(), half = Vector3::Constant(0.5 * box.sizes().maxCoeff());
   box_ = Eigen::AlignedBox3d(middle - box_scale * half, middle + box_scale * half);
   for (Index k = 0; k < DelaunayComplex::far_corners; ++k) {
@@ -349,8 +350,9 @@ void Refiner::consider_crossed_twice(const CellHandle& cell, int corner) {
   const std::array<Vector3, 3> facet = facet_towards(cell, corner);
   const double bad = length_ratio(facet, *size, options_.criteria);
   if (bad <= 1) return;
-  const double there = function_.value(axis_foot(facet));
-  if ((there < 0) != inside(cell)) queue_.push({bad, cell->info().stamp, other->info().stamp, cell, corner});
+  const Vector3 foot = axis_foot(facet);
+  if (foot.allFinite() && (function_.value(foot) < 0) != inside(cell))
+    queue_.push({bad, cell->info().stamp, other->info().stamp, cell, corner});
 }
 
 // Where the surface crosses the line between the centres of the facet's cells.
@@ -473,8 +475,6 @@ void Refiner::collect_cells() {
 }
 
 DelaunayComplex Refiner::run() {
-  if (complex_.vertices.empty())
-    throw CompletionError(stage, "There is no point on the surface to begin the refinement with.");
   insert_initial();
   protect_edges();
   progress_.check();

@@ -44,6 +44,7 @@ PoissonOracle make_oracle(const TriangleMesh* mesh, const OrientedSurfaces& othe
   for (const TriangleMesh* one : meshes) {
     const auto more = sample_surface(*one, lattice, sampling, progress.part(0, 0.2, stage));
     samples.insert(samples.end(), more.begin(), more.end());
+    sampling.max_samples -= more.size();
   }
   const auto more =
       sample_points(others.points, others.normals, lattice, sampling, progress.part(0.2, 0.3, stage));
