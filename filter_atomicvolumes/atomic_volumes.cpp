@@ -172,17 +172,20 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
 }
 
 // The loops that another octree, or a patch that joins less, may close. Where space could not be divided in
-// one of several octrees, it could not in any of them, or another one would have been taken.
+// one of several octrees, it could not in any of them, or another one would have been taken; but other rims
+// that the same patch reaches may be closed without it.
 std::vector<char> Run::left_open() const {
   const bool may_divide = options_.shifts == 1;
   std::vector<char> open(loops_.size(), 0), reached(loops_.size(), 0);
   for (const std::vector<std::size_t>& group : group_by_loops(pieces_)) {
     const bool defect =
         std::any_of(group.begin(), group.end(), [&](std::size_t i) { return !pieces_[i].defect.empty(); });
-    for (std::size_t loop : loops_of(pieces_, group)) {
+    const std::vector<std::size_t> loops = loops_of(pieces_, group);
+    for (std::size_t loop : loops) {
       reached[loop] = 1;
-      open[loop] = defect || blocked_[loop] ||
-                   (may_divide && report_.holes[loop].reason == describe(Sheet::Flaw::open));
+      open[loop] =
+          defect || blocked_[loop] ||
+          ((may_divide || loops.size() > 1) && report_.holes[loop].reason == describe(Sheet::Flaw::open));
     }
   }
   for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= is_targeted(report_.holes[i]) && !reached[i];
