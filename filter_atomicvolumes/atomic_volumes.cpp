@@ -11,9 +11,9 @@
 #include <tuple>
 #include <utility>
 
-#include "common/core/error.h"
 #include "common/core/hole_targets.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/parameter_checks.h"
 #include "common/core/patch_check.h"
 #include "common/core/patch_pieces.h"
 #include "common/core/piece_finishing.h"
@@ -28,10 +28,6 @@
 
 namespace meshcomplete {
 namespace {
-
-void require(bool condition, const char* message) {
-  if (!condition) throw CompletionError("reading the parameters", message);
-}
 
 // Octrees more that are tried for holes that the best one left open.
 constexpr int most_retries = 2;

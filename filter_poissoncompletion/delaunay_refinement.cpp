@@ -10,16 +10,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <queue>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "common/core/error.h"
 #include "common/core/patch.h"
 #include "common/core/threads.h"
 #include "filter_poissoncompletion/coinciding_points.h"
+#include "filter_poissoncompletion/mesh_guard.h"
 #include "filter_poissoncompletion/non_manifold_places.h"
+#include "filter_poissoncompletion/refinement_geometry.h"
 
 namespace meshcomplete {
 namespace {
@@ -33,14 +36,6 @@ constexpr double far_scale = 9;
 
 // How exactly the surface is met, in target edge lengths: far below what a facet's shape shows.
 constexpr double crossing_tolerance = 1e-3;
-
-// Over which part of a target edge length the function's slope is measured: it tells which way the surface
-// faces where facets are still too coarse to.
-constexpr double slope_step = 0.05;
-
-// In target edge lengths, how near the surface may come to the mesh before the mesh's vertices there are
-// wanted: balls of good facets reach no further.
-constexpr double mesh_in_sight = 1.5;
 
 // Pieces into which a protected edge is divided at most, and the least length of a piece in steps between
 // stored numbers: what is not an edge then is no matter of a single vertex nearby any more.
@@ -85,14 +80,9 @@ using Point = Kernel::Point_3;
 Vector3 vector_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
 Point point_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
-// Not finite where the corners lie in a plane.
-Vector3 circumcentre(const CellHandle& cell) {
-  const Vector3 p = vector_of(cell->vertex(0)->point());
-  const Vector3 a = vector_of(cell->vertex(1)->point()) - p, b = vector_of(cell->vertex(2)->point()) - p,
-                c = vector_of(cell->vertex(3)->point()) - p;
-  const Vector3 ab = a.cross(b);
-  return p + (c.squaredNorm() * ab + a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a)) /
-                 (2 * c.dot(ab));
+Vector3 centre_of(const CellHandle& cell) {
+  return circumcentre({vector_of(cell->vertex(0)->point()), vector_of(cell->vertex(1)->point()),
+                       vector_of(cell->vertex(2)->point()), vector_of(cell->vertex(3)->point())});
 }
 
 // The facet across from a corner of a cell; it looks counter-clockwise from there.
@@ -118,26 +108,28 @@ class Refiner {
  public:
   Refiner(const ImplicitFunction& function, const std::vector<Vector3>& initial,
           const RefinementOptions& options, const Progress& progress)
-      : function_(function),
-        initial_(initial),
-        options_(options),
-        progress_(progress),
-        initial_count_(static_cast<Index>(initial.size())) {}
+      : function_(function), options_(options), progress_(progress) {
+    complex_.vertices = initial;
+    complex_.initial_points = static_cast<Index>(initial.size());
+    complex_.on_edge.assign(initial.size(), DelaunayComplex::none);
+    if (options.around) {
+      complex_.mesh_vertex = options.around->initial;
+      guard_.emplace(*options.around, function);
+    }
+    complex_.mesh_vertex.resize(initial.size(), DelaunayComplex::none);
+  }
 
   DelaunayComplex run();
 
  private:
   void insert_initial();
-  VertexInfo info(Index number, const Vector3& position, bool reached) const;
+  VertexInfo add(const Vector3& position, bool reached, Index on_edge, Index mesh_vertex);
   bool in_ball(const CellHandle& cell, const Vector3& position) const;
   CellHandle conflicting(const Vector3& position, const CellHandle& near, const CellHandle& other) const;
   VertexHandle insert(const Vector3& position, const CellHandle& near, const CellHandle& other, bool reached,
                       Index on_edge, Index mesh_vertex);
-  bool insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
-                          const CellHandle& other);
   bool protect_edges();
   bool protect(std::size_t edge);
-  Vector3 division(const std::vector<VertexHandle>& chain, std::size_t piece) const;
   void evaluate(const CellHandle& cell);
   void evaluate_all();
   void stamp(const CellHandle& cell);
@@ -146,70 +138,64 @@ class Refiner {
   void consider(const CellHandle& cell, int corner);
   void consider_crossed_twice(const CellHandle& cell, int corner);
   Vector3 outwards(const CellHandle& cell, int corner) const;
-  Vector3 slope(const Vector3& at, double step) const;
   std::optional<Vector3> surface_centre(const CellHandle& cell, int corner) const;
   void refine_queue();
   bool refine(const QueuedFacet& facet);
   bool refine_at(const QueuedFacet& facet, const Vector3& at);
   bool refine_non_manifold_places();
-  DelaunayComplex complex() const;
+  void collect_cells();
   bool inside(const CellHandle& cell) const { return cell->info().value < 0; }
 
   const ImplicitFunction& function_;
-  const std::vector<Vector3>& initial_;
   const RefinementOptions& options_;
   const Progress& progress_;
-  const Index initial_count_;
   Triangulation triangulation_;
   Eigen::AlignedBox3d box_;
-  std::vector<VertexHandle> handle_of_;            // of initial points
   std::vector<std::vector<VertexHandle>> chains_;  // of protected edges
-  std::vector<Index> lost_edges_;
-  std::vector<Vector3> added_;
-  std::vector<Index> added_on_edge_, added_mesh_vertex_;
-  std::vector<char> inserted_;     // vertices of the protected mesh
+  DelaunayComplex complex_;                        // without its cells, until there is nothing to refine
+  std::optional<MeshGuard> guard_;
   std::vector<char> alive_ = {0};  // by stamp
   std::priority_queue<QueuedFacet> queue_;
-  // Scratch.
-  std::vector<CellHandle> cells_;
+  std::vector<CellHandle> cells_;  // scratch, as the next
   std::vector<Facet> facets_;
 };
 
-VertexInfo Refiner::info(Index number, const Vector3& position, bool reached) const {
+// Numbers a vertex that is none of the initial points.
+VertexInfo Refiner::add(const Vector3& position, bool reached, Index on_edge, Index mesh_vertex) {
+  const auto number = static_cast<Index>(complex_.vertices.size());
+  complex_.vertices.push_back(position);
+  complex_.on_edge.push_back(on_edge);
+  complex_.mesh_vertex.push_back(mesh_vertex);
   return {number, reached, options_.criteria.edge_length(position)};
 }
 
 void Refiner::insert_initial() {
-  const std::vector<Index> first = first_at_position(initial_);
-  std::vector<char> reached(initial_.size(), 0);
+  const std::vector<Index> first = first_at_position(complex_.vertices);
+  std::vector<char> reached(first.size(), 0);
   for (std::size_t i = 0; i < first.size(); ++i)
     reached[first[i]] |= static_cast<char>(options_.seeds.empty() || options_.seeds[i] != 0);
   std::vector<std::pair<Point, VertexInfo>> points;
   Eigen::AlignedBox3d box;
   for (Index i = 0; i < first.size(); ++i) {
     if (first[i] != i) continue;
-    points.emplace_back(point_of(initial_[i]), info(i, initial_[i], reached[i] != 0));
-    box.extend(initial_[i]);
+    const Vector3& at = complex_.vertices[i];
+    points.emplace_back(point_of(at), VertexInfo{i, reached[i] != 0, options_.criteria.edge_length(at)});
+    box.extend(at);
   }
+  if (!(box.sizes().maxCoeff() > 0)) throw CompletionError(stage, "No two points of the surface were found.");
   const Vector3 middle = box.center(), half = Vector3::Constant(0.5 * box.sizes().maxCoeff());
   box_ = Eigen::AlignedBox3d(middle - box_scale * half, middle + box_scale * half);
   for (Index k = 0; k < DelaunayComplex::far_corners; ++k) {
     const Vector3 way(k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]);
-    added_.push_back(middle + far_scale * way);
-    added_on_edge_.push_back(DelaunayComplex::none);
-    added_mesh_vertex_.push_back(DelaunayComplex::none);
-    points.emplace_back(point_of(added_.back()), info(initial_count_ + k, added_.back(), false));
+    const Vector3 corner = middle + far_scale * way;
+    points.emplace_back(point_of(corner), add(corner, false, DelaunayComplex::none, DelaunayComplex::none));
   }
   triangulation_.insert(points.begin(), points.end());
-  handle_of_.resize(initial_.size());
+  std::vector<VertexHandle> handle_of(first.size());
   for (auto v = triangulation_.finite_vertices_begin(); v != triangulation_.finite_vertices_end(); ++v)
-    if (v->info().number < initial_count_) handle_of_[v->info().number] = v;
-  for (std::size_t i = 0; i < handle_of_.size(); ++i) handle_of_[i] = handle_of_[first[i]];
-  if (options_.around) {
-    inserted_.assign(options_.around->mesh.vertices.size(), 0);
-    for (Index v : options_.around->initial) inserted_[v] = 1;
-  }
-  for (const auto& [a, b] : options_.protected_edges) chains_.push_back({handle_of_[a], handle_of_[b]});
+    if (v->info().number < first.size()) handle_of[v->info().number] = v;
+  for (const auto& [a, b] : options_.protected_edges)
+    chains_.push_back({handle_of[first[a]], handle_of[first[b]]});
 }
 
 bool Refiner::in_ball(const CellHandle& cell, const Vector3& position) const {
@@ -231,7 +217,8 @@ CellHandle Refiner::conflicting(const Vector3& position, const CellHandle& near,
 
 VertexHandle Refiner::insert(const Vector3& position, const CellHandle& near, const CellHandle& other,
                              bool reached, Index on_edge, Index mesh_vertex) {
-  if (added_.size() >= options_.max_points + DelaunayComplex::far_corners)
+  if (complex_.vertices.size() >=
+      complex_.initial_points + DelaunayComplex::far_corners + options_.max_points)
     throw CompletionError(stage, "The surface would need more than " + std::to_string(options_.max_points) +
                                      " vertices. Choose a greater edge length.");
   const CellHandle start = conflicting(position, near, other);
@@ -243,10 +230,7 @@ VertexHandle Refiner::insert(const Vector3& position, const CellHandle& near, co
   for (const CellHandle& cell : cells_) alive_[cell->info().stamp] = 0;
   const VertexHandle v = triangulation_.insert_in_hole(p, cells_.begin(), cells_.end(), facets_.front().first,
                                                        facets_.front().second);
-  v->info() = info(initial_count_ + static_cast<Index>(added_.size()), position, reached);
-  added_.push_back(position);
-  added_on_edge_.push_back(on_edge);
-  added_mesh_vertex_.push_back(mesh_vertex);
+  v->info() = add(position, reached, on_edge, mesh_vertex);
   if (alive_.size() == 1) return v;  // nothing has been evaluated yet
   cells_.clear();
   triangulation_.incident_cells(v, std::back_inserter(cells_));
@@ -256,16 +240,6 @@ VertexHandle Refiner::insert(const Vector3& position, const CellHandle& near, co
   }
   for (const CellHandle& cell : cells_) queue_facets_of(cell);
   return v;
-}
-
-// Where the piece of a protected edge after this vertex of its chain is divided. Pieces that begin at the
-// same end of neighbouring edges get powers of two as lengths: then they do not divide each other for ever.
-Vector3 Refiner::division(const std::vector<VertexHandle>& chain, std::size_t piece) const {
-  const bool from_back = piece + 2 == chain.size();
-  const Vector3 a = vector_of(chain[piece]->point()), b = vector_of(chain[piece + 1]->point());
-  if (chain.size() == 2 || (piece > 0 && !from_back)) return 0.5 * (a + b);
-  const double length = (b - a).norm(), part = std::exp2(std::round(std::log2(0.5 * length))) / length;
-  return from_back ? Vector3(b + part * (a - b)) : Vector3(a + part * (b - a));
 }
 
 // Whether anything had to be done.
@@ -280,14 +254,14 @@ bool Refiner::protect(std::size_t edge) {
       ++piece;
       continue;
     }
-    const Vector3 at = division(chain, piece);
     const Vector3 p = vector_of(a->point());
+    const Vector3 at = edge_division(p, vector_of(b->point()), piece == 0, piece + 2 == chain.size());
     const VertexHandle v = chain.size() > most_pieces || (at - p).norm() < least_piece * stored_resolution(p)
                                ? VertexHandle()
                                : insert(at, a->cell(), CellHandle(), a->info().reached && b->info().reached,
                                         static_cast<Index>(edge), DelaunayComplex::none);
     if (v == VertexHandle()) {
-      lost_edges_.push_back(static_cast<Index>(edge));
+      complex_.lost_edges.push_back(static_cast<Index>(edge));
       return any;
     }
     chain.insert(chain.begin() + static_cast<std::ptrdiff_t>(piece + 1), v);
@@ -299,7 +273,7 @@ bool Refiner::protect(std::size_t edge) {
 // Whether any edge had to be restored.
 bool Refiner::protect_edges() {
   bool any = false;
-  lost_edges_.clear();
+  complex_.lost_edges.clear();
   for (std::size_t edge = 0; edge < chains_.size(); ++edge) {
     any |= protect(edge);
     if (edge % insertions_per_check == 0) progress_.check();
@@ -317,7 +291,7 @@ void Refiner::evaluate(const CellHandle& cell) {
   info.in_box = false;
   info.value = 1;
   if (triangulation_.is_infinite(cell)) return;
-  info.centre = circumcentre(cell);
+  info.centre = centre_of(cell);
   info.in_box = info.centre.allFinite() && box_.contains(info.centre);
   if (info.in_box) info.value = function_.value(info.centre);
 }
@@ -376,8 +350,9 @@ void Refiner::consider_crossed_twice(const CellHandle& cell, int corner) {
   const std::array<Vector3, 3> facet = facet_towards(cell, corner);
   const double bad = length_ratio(facet, *size, options_.criteria);
   if (bad <= 1) return;
-  const double there = function_.value(axis_foot(facet));
-  if ((there < 0) != inside(cell)) queue_.push({bad, cell->info().stamp, other->info().stamp, cell, corner});
+  const Vector3 foot = axis_foot(facet);
+  if (foot.allFinite() && (function_.value(foot) < 0) != inside(cell))
+    queue_.push({bad, cell->info().stamp, other->info().stamp, cell, corner});
 }
 
 // Where the surface crosses the line between the centres of the facet's cells.
@@ -391,12 +366,7 @@ std::optional<Vector3> Refiner::surface_centre(const CellHandle& cell, int corne
   // The outer centre is far away, or there is none: go as far as the box does.
   Vector3 way = out.centre - in.centre;
   if (triangulation_.is_infinite(turned ? cell : other) || !way.allFinite()) way = outwards(cell, corner);
-  double share = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    if (way[k] == 0) continue;
-    const double wall = way[k] > 0 ? box_.max()[k] : box_.min()[k];
-    share = std::min(share, (wall - in.centre[k]) / way[k]);
-  }
+  const double share = share_to_wall(box_, in.centre, way);
   if (!std::isfinite(share)) return std::nullopt;
   return crossing(function_, in.centre, in.centre + share * way, tolerance);
 }
@@ -429,48 +399,16 @@ bool Refiner::refine(const QueuedFacet& facet) {
 bool Refiner::refine_at(const QueuedFacet& facet, const Vector3& at) {
   const CellHandle other = facet.cell->neighbor(facet.corner);
   const Vector3 stored = as_stored(at);
-  if (options_.around) {
-    const Cushion& cushion = options_.around->cushion;
-    const std::optional<Cushion::Nearest> nearest = cushion.nearest(stored);
-    if (nearest) {
-      const double size = options_.criteria.edge_length(stored);
-      const bool protect = cushion.reaches(*nearest, slope(stored, slope_step * size));
-      const bool near = protect || nearest->distance < mesh_in_sight * size;
-      if (near && insert_mesh_vertex(*nearest, stored, facet.cell, other)) return true;
-      if (protect) return false;
-    }
+  if (guard_) {
+    const MeshGuard::Answer answer = guard_->ask(stored, options_.criteria.edge_length(stored));
+    if (answer.vertex && insert(options_.around->mesh.vertices[*answer.vertex], facet.cell, other, false,
+                                DelaunayComplex::none, *answer.vertex) != VertexHandle())
+      return true;
+    if (answer.in_cushion) return false;
   }
   if (!in_ball(facet.cell, stored) && !in_ball(other, stored)) return false;
   return insert(stored, facet.cell, other, true, DelaunayComplex::none, DelaunayComplex::none) !=
          VertexHandle();
-}
-
-// What the refinement has come near to has to be there in its own resolution, or the surface is taken for
-// one with it. Whether there was anything to insert.
-bool Refiner::insert_mesh_vertex(const Cushion::Nearest& nearest, const Vector3& at, const CellHandle& near,
-                                 const CellHandle& other) {
-  const TriangleMesh& mesh = options_.around->mesh;
-  Index best = DelaunayComplex::none;
-  double least = std::numeric_limits<double>::infinity();
-  for (Index v : mesh.triangles[nearest.triangle]) {
-    const double squared = (mesh.vertices[v] - at).squaredNorm();
-    if (inserted_[v] || squared >= least) continue;
-    best = v;
-    least = squared;
-  }
-  if (best == DelaunayComplex::none) return false;
-  inserted_[best] = 1;
-  return insert(mesh.vertices[best], near, other, false, DelaunayComplex::none, best) != VertexHandle();
-}
-
-// The direction in which the function grows.
-Vector3 Refiner::slope(const Vector3& at, double step) const {
-  Vector3 result;
-  for (int k = 0; k < 3; ++k) {
-    const Vector3 way = step * Vector3::Unit(k);
-    result[k] = function_.value(at + way) - function_.value(at - way);
-  }
-  return result;
 }
 
 void Refiner::refine_queue() {
@@ -510,22 +448,13 @@ bool Refiner::refine_non_manifold_places() {
     const auto& [cell, corner] = facets[largest];
     worst.push_back({0, cell->info().stamp, cell->neighbor(corner)->info().stamp, cell, corner});
   }
-  const std::size_t before = added_.size();
+  const std::size_t before = complex_.vertices.size();
   for (const QueuedFacet& facet : worst)
     if (alive_[facet.stamp] && alive_[facet.other_stamp]) refine(facet);
-  return added_.size() > before;
+  return complex_.vertices.size() > before;
 }
 
-DelaunayComplex Refiner::complex() const {
-  DelaunayComplex result;
-  result.initial_points = initial_count_;
-  result.vertices = initial_;
-  result.vertices.insert(result.vertices.end(), added_.begin(), added_.end());
-  result.on_edge.assign(initial_.size(), DelaunayComplex::none);
-  result.on_edge.insert(result.on_edge.end(), added_on_edge_.begin(), added_on_edge_.end());
-  if (options_.around) result.mesh_vertex = options_.around->initial;
-  result.mesh_vertex.resize(initial_.size(), DelaunayComplex::none);
-  result.mesh_vertex.insert(result.mesh_vertex.end(), added_mesh_vertex_.begin(), added_mesh_vertex_.end());
+void Refiner::collect_cells() {
   std::vector<Index> number(alive_.size(), DelaunayComplex::none);  // by stamp
   std::vector<CellHandle> cells;
   for (auto c = triangulation_.finite_cells_begin(); c != triangulation_.finite_cells_end(); ++c) {
@@ -538,18 +467,14 @@ DelaunayComplex Refiner::complex() const {
       corners[k] = cell->vertex(k)->info().number;
       neighbours[k] = number[cell->neighbor(k)->info().stamp];
     }
-    result.cells.push_back(corners);
-    result.neighbours.push_back(neighbours);
-    result.inside.push_back(inside(cell));
-    result.values.push_back(static_cast<float>(cell->info().value));
+    complex_.cells.push_back(corners);
+    complex_.neighbours.push_back(neighbours);
+    complex_.inside.push_back(inside(cell));
+    complex_.values.push_back(static_cast<float>(cell->info().value));
   }
-  result.lost_edges = lost_edges_;
-  return result;
 }
 
 DelaunayComplex Refiner::run() {
-  if (initial_.empty())
-    throw CompletionError(stage, "There is no point on the surface to begin the refinement with.");
   insert_initial();
   protect_edges();
   progress_.check();
@@ -561,7 +486,8 @@ DelaunayComplex Refiner::run() {
   }
   refine_queue();
   progress_.update(1);
-  return complex();
+  collect_cells();
+  return std::move(complex_);
 }
 
 }  // namespace

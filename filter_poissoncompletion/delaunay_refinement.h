@@ -10,18 +10,11 @@
 #include "common/core/implicit_function.h"
 #include "common/core/mesh.h"
 #include "common/core/progress.h"
-#include "filter_poissoncompletion/cushion.h"
 #include "filter_poissoncompletion/delaunay_complex.h"
 #include "filter_poissoncompletion/facet_quality.h"
+#include "filter_poissoncompletion/mesh_guard.h"
 
 namespace meshcomplete {
-
-/// The mesh that a refinement leaves alone.
-struct ProtectedMesh {
-  const TriangleMesh& mesh;
-  const Cushion& cushion;             ///< where no point is inserted but vertices of the mesh
-  const std::vector<Index>& initial;  ///< the mesh's vertex at each initial point
-};
 
 struct RefinementOptions {
   RefinementCriteria criteria;
@@ -43,9 +36,9 @@ struct RefinementOptions {
 /// vertex of the mesh's triangle there that is nearest to it is inserted, if any is not yet. A cell's sign is
 /// that of the function at its circumcentre, outside of a box three times as large as that of the points it
 /// is outside. Places where the surface crosses such a line an even number of times are not seen. Source: the
-/// paper, algorithm 1. Deterministic. Throws CompletionError (too many points, fewer than one initial point)
-/// and Cancelled. Cost: O(n log n) for n initial points, threaded in part, and for each inserted one about 25
-/// values of the function.
+/// paper, algorithm 1. Deterministic. Throws CompletionError (too many points, initial
+/// points at fewer than two positions) and Cancelled. Cost: O(n log n) for n initial points, threaded in
+/// part, and for each inserted one about 25 values of the function.
 DelaunayComplex refine_delaunay(const ImplicitFunction& function, const std::vector<Vector3>& initial,
                                 const RefinementOptions& options, const Progress& progress = Progress());
 

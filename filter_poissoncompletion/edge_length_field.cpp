@@ -104,11 +104,10 @@ std::vector<RimSample> smoothed_samples(const std::vector<Vector3>& positions,
   const std::size_t n = positions.size(), reach = std::min(most_neighbours, (n - 1) / 2);
   std::vector<RimSample> samples;
   samples.reserve(n);
-  double sum = 0;
-  for (std::size_t k = 0; k < 2 * reach + 1; ++k) sum += lengths[(n - reach + k) % n];
   for (std::size_t i = 0; i < n; ++i) {
+    double sum = 0;  // each anew: beside a very long edge differences would leave nothing of short ones
+    for (std::size_t k = 0; k < 2 * reach + 1; ++k) sum += lengths[(i + n - reach + k) % n];
     samples.push_back({positions[i], sum / static_cast<double>(2 * reach + 1)});
-    sum += lengths[(i + reach + 1) % n] - lengths[(i + n - reach) % n];
   }
   return samples;
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/core/error.h"
 #include "common/core/hole_targets.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/parameter_checks.h"
 #include "common/core/patch_check.h"
 #include "common/core/piece_results.h"
 #include "common/core/rim.h"
@@ -16,12 +16,6 @@
 
 namespace meshcomplete {
 namespace {
-
-void require(bool condition, const char* message) {
-  if (!condition) throw CompletionError("reading the parameters", message);
-}
-
-bool positive(double x) { return std::isfinite(x) && x > 0; }
 
 // Cubes of the octree from one side of a wall to the other: with fewer its two sides run into one.
 constexpr double cubes_in_wall = 3;

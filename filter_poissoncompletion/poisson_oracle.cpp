@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/error.h"
+#include "common/core/parameter_checks.h"
 #include "filter_poissoncompletion/surface_sampling.h"
 
 namespace meshcomplete {
@@ -13,10 +14,6 @@ constexpr const char* stage = "building the oracle";
 
 // What automatic depths stop at: cubes are then far smaller than anything else at a rim.
 constexpr int most_automatic_depth = 14;
-
-void require(bool condition, const char* message) {
-  if (!condition) throw CompletionError("reading the parameters", message);
-}
 
 }  // namespace
 
@@ -47,6 +44,7 @@ PoissonOracle make_oracle(const TriangleMesh* mesh, const OrientedSurfaces& othe
   for (const TriangleMesh* one : meshes) {
     const auto more = sample_surface(*one, lattice, sampling, progress.part(0, 0.2, stage));
     samples.insert(samples.end(), more.begin(), more.end());
+    sampling.max_samples -= more.size();
   }
   const auto more =
       sample_points(others.points, others.normals, lattice, sampling, progress.part(0.2, 0.3, stage));

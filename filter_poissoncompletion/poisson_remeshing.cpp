@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_set>
 
-#include "common/core/error.h"
+#include "common/core/parameter_checks.h"
 #include "common/core/patch.h"
 #include "common/core/stage_clock.h"
 #include "filter_poissoncompletion/surface_meshing.h"
@@ -22,12 +22,6 @@ constexpr double uniform_edge = 2, longest_edge = 8, usual_distance = 0.15;
 
 // A start in each cube of this depth that holds a sample, so that no component is missed that is as large.
 constexpr int depth_of_starts = 6;
-
-void require(bool condition, const char* message) {
-  if (!condition) throw CompletionError("reading the parameters", message);
-}
-
-bool positive(double x) { return std::isfinite(x) && x > 0; }
 
 std::vector<Vector3> starts(const OctreeField& field, const std::vector<Vector3>& samples) {
   std::unordered_set<Index> taken;

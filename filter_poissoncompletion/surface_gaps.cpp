@@ -8,6 +8,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "common/core/pair_key.h"
+
 namespace meshcomplete {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr Index none = SheetVertex::none;
 constexpr std::size_t most_edges = 24;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-std::uint64_t pair_key(Index a, Index b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
 
 class GapCloser {
  public:

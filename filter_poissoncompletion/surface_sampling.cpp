@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -37,10 +38,15 @@ constexpr double pi = 3.14159265358979323846;
 // The two numbers whose multiples fill the unit square most evenly (Roberts' R2 sequence).
 constexpr double first_step = 0.7548776662466927, second_step = 0.5698402909980532;
 
+// Parts of triangles, or samples, between two looks whether the user wants to stop, or there are too many
+// samples: about a millisecond.
+constexpr std::size_t parts_per_check = 4096;
+
 class Sampler {
  public:
-  Sampler(const TriangleMesh& mesh, const Lattice& lattice, const SamplingOptions& options)
-      : mesh_(mesh), lattice_(lattice), options_(options) {}
+  Sampler(const TriangleMesh& mesh, const Lattice& lattice, const SamplingOptions& options,
+          std::atomic<std::size_t>& total, const Progress& progress)
+      : mesh_(mesh), lattice_(lattice), options_(options), total_(total), progress_(progress) {}
 
   std::vector<OrientedSample> sample(std::size_t begin, std::size_t end) {
     samples_.clear();
@@ -51,10 +57,21 @@ class Sampler {
       const Vector3 normal = (b - a).cross(c - a);
       if (normal.allFinite() && !normal.isZero(0)) add(a, b, c, normal.normalized());
     }
+    check();
     return std::move(samples_);
   }
 
  private:
+  void check() {
+    progress_.check();
+    total_ += samples_.size() - counted_;
+    counted_ = samples_.size();
+    if (total_ > options_.max_samples)
+      throw CompletionError("sampling the surface",
+                            "The octree is too fine: it would need tens of millions of samples. Choose a "
+                            "smaller maximum depth, or fewer samples.");
+  }
+
   void add(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& normal) {
     const int depth = depth_of(lattice_, options_.cube_size((a + b + c) / 3), options_);
     const double side = lattice_.side() / static_cast<double>(std::int64_t{1} << depth);
@@ -68,12 +85,14 @@ class Sampler {
       add(middle, to, across, normal);
       return;
     }
+    if (++parts_ % parts_per_check == 0) check();
     const double area = side * side / options_.density;
     owed_ += 0.5 * (b - a).cross(c - a).norm() / area;
     for (; owed_ >= 1; owed_ -= 1, ++count_) {
       double u = std::fmod(0.5 + first_step * count_, 1.0), v = std::fmod(0.5 + second_step * count_, 1.0);
       if (u + v > 1) u = 1 - u, v = 1 - v;
       samples_.push_back({a + u * (b - a) + v * (c - a), area * normal, depth});
+      if (samples_.size() % parts_per_check == 0) check();
     }
   }
 
@@ -83,6 +102,9 @@ class Sampler {
   std::vector<OrientedSample> samples_;
   double owed_ = 0;  // samples that the triangles so far were too small for
   double count_ = 0;
+  std::atomic<std::size_t>& total_;  // of all samplers
+  const Progress& progress_;
+  std::size_t parts_ = 0, counted_ = 0;
 };
 
 }  // namespace
@@ -97,8 +119,9 @@ std::vector<OrientedSample> sample_surface(const TriangleMesh& mesh, const Latti
                                            const SamplingOptions& options, const Progress& progress) {
   const std::size_t ranges = (mesh.triangles.size() + grain - 1) / grain;
   std::vector<std::vector<OrientedSample>> parts(ranges);
+  std::atomic<std::size_t> total{0};
   for_each(ranges, 1, progress, [&](std::size_t range) {
-    parts[range] = Sampler(mesh, lattice, options)
+    parts[range] = Sampler(mesh, lattice, options, total, progress)
                        .sample(range * grain, std::min((range + 1) * grain, mesh.triangles.size()));
   });
   std::vector<OrientedSample> samples;
@@ -137,6 +160,9 @@ std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
     const double cube = std::max(options.cube_size(points[point]), std::sqrt(points_per_cube * area));
     samples[i] = {points[point], area * normals[point].normalized(), depth_of(lattice, cube, options)};
   });
+  samples.erase(std::remove_if(samples.begin(), samples.end(),
+                               [](const OrientedSample& s) { return s.area_normal.isZero(0); }),
+                samples.end());
   return samples;
 }
 

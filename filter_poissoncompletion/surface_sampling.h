@@ -19,19 +19,23 @@ struct SamplingOptions {
   int min_depth = 5;   ///< of the octree
   int max_depth = 8;   ///< at least `min_depth`, at most `CornerOctree::most_depth`
   double density = 4;  ///< samples for each face of a cube, positive
+  /// More samples of a mesh throw CompletionError: with the octree they would take some 10 GB.
+  std::size_t max_samples = 40000000;
 };
 
 /// Samples of every part of the surface, of equal areas where the cubes are of one size, with the faces'
 /// normals. Every sample's depth is the smallest at which the cubes are no larger than asked for. Faces
 /// without area and with coordinates that are not finite are left out. Deterministic whatever the number of
-/// threads. Source: the paper, section 3.2. Cost: O(faces + samples), threaded.
+/// threads. Source: the paper, section 3.2. Throws CompletionError (too many samples) and Cancelled. Cost:
+/// O(faces + samples), threaded.
 std::vector<OrientedSample> sample_surface(const TriangleMesh& mesh, const Lattice& lattice,
                                            const SamplingOptions& options,
                                            const Progress& progress = Progress());
 
 /// Samples for a point set with normals: each stands for the area that its neighbours leave it, so that
 /// dense parts do not weigh more, and asks for no cubes that would be mostly without a point. Points with a
-/// normal of no length, or coordinates that are not finite, are left out. Cost: O(n log n), threaded.
+/// normal of no length, or coordinates that are not finite, and such of which so many are at one position
+/// that no area is left for them, are left out. Cost: O(n log n), threaded.
 std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
                                           const std::vector<Vector3>& normals, const Lattice& lattice,
                                           const SamplingOptions& options,

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/pair_key.h"
+
 namespace meshcomplete {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr Index none = SheetVertex::none;
 
 // A facet goes when so many of its sides have a wrong number of facets: then fewer have afterwards.
 constexpr int enough_sides = 2;
-
-std::uint64_t pair_key(Index a, Index b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
 
 class Dropper {
  public:

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "common/core/graph_cut.h"
+#include "common/core/pair_key.h"
 #include "filter_poissoncompletion/surplus_facets.h"
 
 namespace meshcomplete {
@@ -63,10 +64,6 @@ class Tailor {
   std::vector<char> side_;                            // that the ring has a cell on
   std::vector<char> label_;                           // inside
 };
-
-std::uint64_t pair_key(Index a, Index b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
 
 void Tailor::place_vertices() {
   place_.assign(complex_.vertices.size(), Place::elsewhere);

@@ -1,10 +1,11 @@
 #include "common/core/corner_octree.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <utility>
+
+#include "common/core/threads.h"
 
 namespace meshcomplete {
 namespace {
@@ -60,13 +61,22 @@ void add_parents_around(Code cube, int depth, std::vector<Code>& parents) {
   }
 }
 
+// Cubes and blocks between two looks whether the user wants to stop: about a millisecond.
+constexpr std::size_t cubes_per_check = 16384;
+constexpr Index blocks_per_check = 1024;
+
 // Per depth the cubes that have to be split, ascending; below `min_depth` all are, and not listed.
 std::vector<std::vector<Code>> cubes_to_split(const std::vector<WantedCube>& wanted, int min_depth,
-                                              CornerOctree::Balance balance) {
+                                              CornerOctree::Balance balance, const Progress& progress) {
+  std::size_t count = 0;
+  const auto look = [&] {
+    if (++count % cubes_per_check == 0) progress.check();
+  };
   int depth = min_depth;
   for (const WantedCube& one : wanted) depth = std::max(depth, one.depth);
   std::vector<std::vector<Code>> holding(depth + 1), split(depth);
   for (const WantedCube& one : wanted) {
+    look();
     std::array<std::int64_t, 3> x;
     for (int k = 0; k < 3; ++k) x[k] = one.point[k] / Octree::side(one.depth);
     holding[one.depth].push_back(encode(x));
@@ -75,6 +85,7 @@ std::vector<std::vector<Code>> cubes_to_split(const std::vector<WantedCube>& wan
     sort_out(holding[d]);
     std::vector<Code>& parents = split[d - 1];
     for (Code cube : holding[d]) {
+      look();
       if (balance == CornerOctree::Balance::two_to_one)
         add_parents_around(cube, d, parents);
       else
@@ -82,7 +93,10 @@ std::vector<std::vector<Code>> cubes_to_split(const std::vector<WantedCube>& wan
       holding[d - 1].push_back(cube >> 3);
     }
     if (d < depth && balance == CornerOctree::Balance::two_to_one)
-      for (Code cube : split[d]) add_parents_around(cube, d, parents);
+      for (Code cube : split[d]) {
+        look();
+        add_parents_around(cube, d, parents);
+      }
     sort_out(parents);
   }
   return split;
@@ -131,7 +145,7 @@ class CornerTable {
 
 CornerOctree::CornerOctree(const std::vector<WantedCube>& wanted, int min_depth, Balance balance,
                            const Progress& progress) {
-  const std::vector<std::vector<Code>> split = cubes_to_split(wanted, min_depth, balance);
+  const std::vector<std::vector<Code>> split = cubes_to_split(wanted, min_depth, balance, progress);
   std::vector<std::pair<Code, Index>> cubes = {{0, 0}};  // of one depth, with their codes, ascending
   for (int depth = 0; depth < static_cast<int>(split.size()); ++depth) {
     progress.check();
@@ -148,16 +162,18 @@ CornerOctree::CornerOctree(const std::vector<WantedCube>& wanted, int min_depth,
     }
     cubes = std::move(children);
   }
-  tbb::parallel_for(0, depth(), [&](int d) { number_corners(levels_[d], d + 1); });
+  for_each(levels_.size(), 1, progress,
+           [&](std::size_t d) { number_corners(levels_[d], static_cast<int>(d + 1), progress); });
 }
 
-void CornerOctree::number_corners(Level& level, int depth) const {
+void CornerOctree::number_corners(Level& level, int depth, const Progress& progress) const {
   const Index past = depth < this->depth() ? levels_[depth].first_block : static_cast<Index>(parents_.size());
   const std::int64_t half = Octree::side(depth), side = std::int64_t{1} << depth;
   CornerTable table(8 * (past - level.first_block));
   std::vector<std::uint8_t> cubes;  // of this depth, round each corner
   level.corners.resize(past - level.first_block);
   for (Index b = 0; b < level.corners.size(); ++b) {
+    if (b % blocks_per_check == 0) progress.check();
     const LatticePoint low = octree_[parents_[level.first_block + b]].low;
     const std::array<std::int64_t, 3> x = {low[0] / half, low[1] / half, low[2] / half};
     for (int place = 0; place < 27; ++place) {

@@ -48,7 +48,7 @@ class CornerOctree {
   };
 
   /// All cubes of depth less than `min_depth` (at least 1) are split. Cost: O(n log n) for n wanted cubes,
-  /// threaded.
+  /// threaded. Throws Cancelled.
   CornerOctree(const std::vector<WantedCube>& wanted, int min_depth, Balance balance = Balance::two_to_one,
                const Progress& progress = Progress());
 
@@ -77,7 +77,7 @@ class CornerOctree {
   }
 
  private:
-  void number_corners(Level& level, int depth) const;
+  void number_corners(Level& level, int depth, const Progress& progress) const;
 
   Octree octree_;
   std::vector<Index> parents_;

@@ -24,7 +24,9 @@ using CubeMatrix = std::array<double, 36>;  // symmetric, the upper half by rows
 
 constexpr std::size_t grain = 1024;      // corners or samples in one go of a thread
 constexpr std::size_t block_grain = 64;  // blocks: as much work
-constexpr double jump = 0.5;             // of the function to either side of the surface: V has the length 1
+// Samples between two looks whether the user wants to stop: about a millisecond.
+constexpr std::size_t samples_per_check = 16384;
+constexpr double jump = 0.5;  // of the function to either side of the surface: V has the length 1
 
 // A number for each child of a block: the same arithmetic for all eight at once.
 using Octet = Eigen::Array<double, 8, 1>;
@@ -113,7 +115,8 @@ class Solver {
 
   Vectors spread_normals(int depth, const Progress& progress) const;
   std::vector<Values> right_hand_sides(const Progress& progress);
-  void screen(int depth, std::vector<Index>& matrix_of, std::vector<CubeMatrix>& matrices) const;
+  void screen(int depth, std::vector<Index>& matrix_of, std::vector<CubeMatrix>& matrices,
+              const Progress& progress) const;
   PoissonLevelFigures solve_level(int depth, const Values& right, Values& u, const Progress& progress) const;
   double mean_at_samples(const std::vector<Values>& values) const;
 
@@ -182,6 +185,7 @@ Vectors Solver::spread_normals(int depth, const Progress& progress) const {
   Vectors density(level.corner_count, Vector3::Zero());
   const double volume = std::pow(side(depth), 3);
   for (std::size_t s = 0; s < samples_.size(); ++s) {
+    if (s % samples_per_check == 0) progress.check();
     if (samples_[s].depth != depth) continue;
     const Place place = place_of(s);
     const std::array<Index, 8> corners = octree_->corners(place.cube);
@@ -257,13 +261,15 @@ std::vector<Values> Solver::right_hand_sides(const Progress& progress) {
 
 // The samples' part of the equations of a level: a matrix for every cube with samples. `matrix_of` is by
 // 8 * block + child.
-void Solver::screen(int depth, std::vector<Index>& matrix_of, std::vector<CubeMatrix>& matrices) const {
+void Solver::screen(int depth, std::vector<Index>& matrix_of, std::vector<CubeMatrix>& matrices,
+                    const Progress& progress) const {
   const Level& level = octree_->level(depth);
   matrix_of.assign(8 * level.corners.size(), Octree::none);
   const double weight =
       options_.screening * (depth < this->depth() ? options_.coarse_screening : 1) / side(depth);
   const Index first = CornerOctree::first_cube(level.first_block);
   for (std::size_t s = 0; s < samples_.size(); ++s) {
+    if (s % samples_per_check == 0) progress.check();
     const Place place = place_of(s);
     if (octree_->octree()[place.cube].depth != depth) continue;
     Index& number = matrix_of[place.cube - first];
@@ -412,7 +418,7 @@ PoissonLevelFigures Solver::solve_level(int depth, const Values& right, Values& 
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = level.inner[i] && !(dirichlet && level.outside[i]);
   std::vector<Index> matrix_of;
   std::vector<CubeMatrix> matrices;
-  screen(depth, matrix_of, matrices);
+  screen(depth, matrix_of, matrices, progress);
   const LevelEquations equations(level, side(depth), matrix_of, matrices, std::move(free));
   return minimise(equations, right, u, options_.iterations, options_.tolerance, progress);
 }

@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "common/core/pair_key.h"
 #include "common/core/touching_fans.h"
 
 namespace meshcomplete {
@@ -77,10 +78,6 @@ class Splitter {
   std::vector<char> doubled_;
   std::vector<char> joined_;  // vertices that would have to be two of the input's at once
 };
-
-std::uint64_t pair_key(Index a, Index b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
 
 void Splitter::index_rim_edges() {
   for (Index h : topology_.boundary_half_edges) {

@@ -204,6 +204,13 @@ TEST(DelaunayRefinement, TooManyPoints) {
   EXPECT_THROW(refine_delaunay(test::sphere_oracle(), test::icosphere(0).vertices, options), CompletionError);
 }
 
+TEST(DelaunayRefinement, PointsThatAreNoSurface) {
+  const test::Oracle oracle = test::sphere_oracle();
+  EXPECT_THROW(refine_delaunay(oracle, {}, uniform(1)), CompletionError);
+  EXPECT_THROW(refine_delaunay(oracle, {{1, 0, 0}}, uniform(1)), CompletionError);
+  EXPECT_THROW(refine_delaunay(oracle, {{1, 0, 0}, {1, 0, 0}}, uniform(1)), CompletionError);
+}
+
 TEST(DelaunayRefinement, CanBeCancelled) {
   int calls = 0;
   const Progress progress([&](double, const std::string&) { return ++calls < 2; });

@@ -96,6 +96,15 @@ TEST(SmoothedSamples, AverageAlongTheLoop) {
   }
 }
 
+TEST(SmoothedSamples, TinyEdgesAfterALongOne) {
+  std::vector<double> lengths(100, 1e-12);
+  lengths[50] = 1e6;
+  const std::vector<RimSample> samples =
+      smoothed_samples(std::vector<Vector3>(100, Vector3::Zero()), lengths);
+  EXPECT_NEAR(samples[10].edge_length, 1e-12, 1e-18);
+  EXPECT_NEAR(samples[90].edge_length, 1e-12, 1e-18);
+}
+
 TEST(SmoothedSamples, ShortLoop) {
   const std::vector<RimSample> samples =
       smoothed_samples({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)}, {1, 2, 3});

@@ -93,6 +93,26 @@ TEST(SurfaceSampling, NeedlesAndBrokenTriangles) {
   EXPECT_EQ(sample_surface(mesh, root_cube({&mesh}, {}, 2.2), cubes(0.05)).size(), whole);
 }
 
+// Two triangles are one task of one thread; it has to notice all the same.
+TEST(SurfaceSampling, TooManySamplesAndCancelling) {
+  const TriangleMesh mesh = test::flat_grid(1, 1);
+  SamplingOptions options = cubes(1e-9);
+  options.max_depth = 16;
+  options.max_samples = 100000;
+  EXPECT_THROW(sample_surface(mesh, root_cube({&mesh}, {}, 2.2), options), CompletionError);
+  options.max_samples = 40000000;
+  int calls = 0;
+  const Progress progress([&](double, const std::string&) { return ++calls < 2; });
+  EXPECT_THROW(sample_surface(mesh, root_cube({&mesh}, {}, 2.2), options, progress), Cancelled);
+}
+
+// A dozen points at every position leave no area to any of them.
+TEST(SurfaceSampling, PointsWithoutAreaAreNoSamples) {
+  std::vector<Vector3> points, normals(36, Vector3(0, 0, 1));
+  for (int i = 0; i < 36; ++i) points.emplace_back(i / 12, i / 24, 0);
+  EXPECT_TRUE(sample_points(points, normals, root_cube({}, points, 2.2), cubes(0.1)).empty());
+}
+
 TEST(SurfaceSampling, TheNumberOfThreadsDoesNotMatter) {
   const TriangleMesh mesh = test::icosphere(5);
   const Lattice lattice = root_cube({&mesh}, {}, 2.2);
