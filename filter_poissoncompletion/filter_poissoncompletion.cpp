@@ -124,7 +124,7 @@ FilterDeclaration closing_filter() {
                         "Near the holes it is halved until cubes are as small as the edges there, and as a "
                         "third of thin walls; but at most so often, up to 16. 0: 14 times.",
                         "levels", 0, 0, 16);
-  for (const auto& more : {guide_parameters(), oracle_parameters(max_depth, 2.2, 0), refinement_parameters()})
+  for (const auto& more : {guide_parameters(), oracle_parameters(max_depth, 2.2), refinement_parameters()})
     filter.parameters.insert(filter.parameters.end(), more.begin(), more.end());
   filter.apply = apply_closing;
   return filter;

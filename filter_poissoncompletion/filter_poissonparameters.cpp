@@ -5,8 +5,7 @@
 namespace meshcomplete {
 namespace host {
 
-std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_depth, double scale,
-                                                    int boundary) {
+std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_depth, double scale) {
   return {integer_parameter("MinDepth", "Minimum depth",
                             "How often the cube around the mesh is halved everywhere, 1 to 8.", "levels", 5,
                             1, 8),
@@ -16,7 +15,7 @@ std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_dep
           choice_parameter("Boundary", "Outside",
                            "Solid: all that is far away is outside, so that separate parts stay separate. "
                            "Free: a surface may leave the cube.",
-                           {"Solid", "Free"}, boundary),
+                           {"Solid", "Free"}),
           positive_parameter("Screening", "Screening",
                              "How closely the reconstruction goes through the mesh.", "", 16),
           positive_parameter("Samples", "Samples", "Points taken from the mesh.", "per face of a cube", 4),

@@ -12,9 +12,8 @@
 namespace meshcomplete {
 namespace host {
 
-/// `max_depth` is the declaration of MaxDepth, the other two are defaults.
-std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_depth, double scale,
-                                                    int boundary);
+/// `max_depth` is the declaration of MaxDepth, `scale` the default of Scale.
+std::vector<ParameterDeclaration> oracle_parameters(ParameterDeclaration max_depth, double scale);
 
 /// The values of these parameters.
 PoissonOracleOptions oracle_options(const ParameterValues& values);

@@ -55,15 +55,16 @@ FilterDeclaration remeshing_filter() {
       length_parameter("EdgeLength", "Edge length",
                        "Of the edges, at most. 0: 8 of the smallest cubes, 2 when not adaptive. A percentage "
                        "is of the bounding box's diagonal."),
-      length_parameter("Distance", "Distance",
-                       "How far faces may be from the surface when they adapt to it. 0: 0.15 of the smallest "
-                       "cubes. A percentage is of the bounding box's diagonal."),
+      length_parameter(
+          "Distance", "Distance",
+          "How far faces may be from the surface when they adapt to it. 0: a tenth of the smallest "
+          "cubes. A percentage is of the bounding box's diagonal."),
       integer_parameter("Angle", "Smallest angle", "Faces with smaller angles are refined.", "degrees", 25, 0,
                         30)};
   const ParameterDeclaration max_depth =
       integer_parameter("MaxDepth", "Maximum depth",
                         "How often it is halved at the surface, up to 16. 0: 8 times.", "levels", 0, 0, 16);
-  for (const ParameterDeclaration& more : oracle_parameters(max_depth, 1.1, 1))
+  for (const ParameterDeclaration& more : oracle_parameters(max_depth, 1.1))
     filter.parameters.push_back(more);
   filter.apply = apply_remeshing;
   return filter;

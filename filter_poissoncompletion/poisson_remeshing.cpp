@@ -18,16 +18,18 @@ constexpr int usual_depth = 8;
 
 // In the octree's finest cubes: edges of facets that all have one size, edges of flat facets, and how far
 // adaptive ones may be from the surface.
-constexpr double uniform_edge = 2, longest_edge = 8, usual_distance = 0.15;
+constexpr double uniform_edge = 2, longest_edge = 8, usual_distance = 0.1;
 
-// A start in each cube of this depth that holds a sample, so that no component is missed that is as large.
-constexpr int depth_of_starts = 6;
+// Starts are as far apart as the longest edges: a start in each cube of so many levels above the finest that
+// holds a sample. No component that is larger is missed.
+constexpr int levels_above = 3;
 
 std::vector<Vector3> starts(const OctreeField& field, const std::vector<Vector3>& samples) {
+  const int depth = std::max(1, field.octree().depth() - levels_above);
   std::unordered_set<Index> taken;
   std::vector<Vector3> result;
   for (const Vector3& p : samples)
-    if (taken.insert(field.octree().octree().find(field.lattice().snap(p), depth_of_starts)).second)
+    if (taken.insert(field.octree().octree().find(field.lattice().snap(p), depth)).second)
       result.push_back(p);
   return result;
 }

@@ -20,7 +20,7 @@ struct PoissonRemeshingOptions {
   /// the curvature, else 2.
   std::optional<double> edge_length;
   bool adaptive = true;  ///< shorter edges where the surface is more curved
-  /// How far facets may be from the surface when edges adapt (mesh units, positive). Absent: 0.15 of the
+  /// How far facets may be from the surface when edges adapt (mesh units, positive). Absent: a tenth of the
   /// octree's finest cubes.
   std::optional<double> distance;
   double smallest_angle = 25;  ///< that facets are refined for (degrees, 0 to 30)
