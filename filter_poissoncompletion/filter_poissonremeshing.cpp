@@ -64,7 +64,7 @@ FilterDeclaration remeshing_filter() {
   const ParameterDeclaration max_depth =
       integer_parameter("MaxDepth", "Maximum depth",
                         "How often it is halved at the surface, up to 16. 0: 8 times.", "levels", 0, 0, 16);
-  for (const ParameterDeclaration& more : oracle_parameters(max_depth, 1.1))
+  for (const ParameterDeclaration& more : oracle_parameters(max_depth, 1.5))
     filter.parameters.push_back(more);
   filter.apply = apply_remeshing;
   return filter;

@@ -342,10 +342,10 @@ class Reconstruction(Case):
 
     def test_a_mesh_with_a_hole(self):
         self.write_fine((0.7, 1.1))
-        flat = len(self.close("MaxDepth=6", "Distance=0.02").triangles)
+        flat = len(self.close("MaxDepth=7", "Distance=0.02", "Scale=3").triangles)
         self.assert_closed()
         self.assertEqual(self.said("Genus"), 0)
-        after = self.close("MaxDepth=6", "Distance=0.002")
+        after = self.close("MaxDepth=7", "Distance=0.002", "Scale=3")
         self.assert_closed()
         self.assertGreater(len(after.triangles), 2 * flat, "shorter edges are nearer to the surface")
         for point in after.points:
