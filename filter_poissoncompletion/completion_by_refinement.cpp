@@ -103,13 +103,15 @@ std::vector<const BoundaryLoop*> Run::targets() const {
 }
 
 EdgeLengthField Run::make_field() const {
-  if (options_.edge_length) return EdgeLengthField(*options_.edge_length);
   std::vector<RimSample> samples;
   for (const BoundaryLoop* loop : targets()) {
     const Rim rim = collect_rim(mesh_, topology_, *loop);
     const std::vector<RimSample> more = smoothed_samples(rim.positions, rim.edge_length);
     samples.insert(samples.end(), more.begin(), more.end());
   }
+  // The field still has to know how far the rims are.
+  if (options_.edge_length)
+    for (RimSample& sample : samples) sample.edge_length = *options_.edge_length;
   return EdgeLengthField(std::move(samples));
 }
 

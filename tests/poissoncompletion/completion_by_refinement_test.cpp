@@ -187,6 +187,19 @@ TEST(CompletionByRefinement, WhatIsCutOutMeetsNothing) {
   }
 }
 
+// The cushion is as thick at the rims, and grows as far, as with the same length taken from them.
+TEST(CompletionByRefinement, AGivenEdgeLengthIsAsGoodAsTheRims) {
+  const TriangleMesh mesh = test::sphere_with_hole(5, 0.6);
+  RefinedCompletionOptions options;
+  const RefinedCompletionFigures own = complete(mesh, test::sphere_oracle(), options).result.figures;
+  options.edge_length = mean_edge(mesh.vertices, mesh.triangles);
+  const RefinedCompletionFigures given = complete(mesh, test::sphere_oracle(), options).result.figures;
+  const auto inserted = [](const RefinedCompletionFigures& figures) {
+    return static_cast<double>(figures.points - figures.initial_points);
+  };
+  EXPECT_NEAR(inserted(given) / inserted(own), 1, 0.1);
+}
+
 TEST(CompletionByRefinement, GivenEdgeLength) {
   RefinedCompletionOptions options;
   options.edge_length = 0.15;
