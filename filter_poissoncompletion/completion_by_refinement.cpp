@@ -139,7 +139,7 @@ std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Pro
     positions.push_back(mesh_.vertices[v]);
     names.push_back(v);
   }
-  for (Index h = 0; h < 3 * mesh_.triangles.size(); ++h) {
+  for (Index h = 0; &divided_ != &mesh_ && h < 3 * mesh_.triangles.size(); ++h) {
     const Index v = mesh_.triangles[h / 3][h % 3], name = divided_.triangles[h / 3][h % 3];
     if (name != v && points.vertices[number[v]] == v) names[number[v]] = name;
   }

@@ -20,8 +20,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-EdgeLengthField::EdgeLengthField(double uniform) : shortest_(uniform), longest_(uniform) {}
-
 EdgeLengthField::EdgeLengthField(std::vector<RimSample> samples)
     : samples_(std::move(samples)), shortest_(infinity), longest_(0) {
   if (samples_.empty())
@@ -91,7 +89,6 @@ double EdgeLengthField::at(const Vector3& point) const {
 }
 
 double EdgeLengthField::distance(const Vector3& point) const {
-  if (samples_.empty()) return infinity;
   double best = infinity;
   const auto bound = [&](const Node&, double distance) { return distance < best; };
   const auto offer = [&](const RimSample& s) { best = std::min(best, (s.position - point).norm()); };

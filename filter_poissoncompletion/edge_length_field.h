@@ -26,15 +26,13 @@ class EdgeLengthField {
   /// Neighbouring triangles of a mesh that grows so fast stay well shaped.
   static constexpr double gradation = 0.3;
 
-  /// The same length everywhere (mesh units, positive).
-  explicit EdgeLengthField(double uniform);
   /// At least one sample. Cost: O(n log n).
   explicit EdgeLengthField(std::vector<RimSample> samples);
 
   /// Cost: O(1) for one density, else O(log samples) and the samples about as near as the nearest.
   double at(const Vector3& point) const;
 
-  /// How far the nearest sample is; infinite for a uniform field. Cost: O(log samples).
+  /// How far the nearest sample is. Cost: O(log samples).
   double distance(const Vector3& point) const;
 
   double shortest() const { return shortest_; }

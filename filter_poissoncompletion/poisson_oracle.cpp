@@ -23,7 +23,7 @@ void check_options(const PoissonOracleOptions& o) {
           "MaxDepth must lie between MinDepth and 16, or be 0 for one that is chosen automatically.");
   require(std::isfinite(o.scale) && o.scale > 1 && o.scale <= 10,
           "Scale must lie above 1 and be at most 10.");
-  require(std::isfinite(o.density) && o.density > 0, "Samples must be positive.");
+  require(positive(o.density), "Samples must be positive.");
   require(std::isfinite(o.poisson.screening) && o.poisson.screening >= 0, "Screening must not be negative.");
 }
 
@@ -53,10 +53,9 @@ PoissonOracle make_oracle(const TriangleMesh* mesh, const OrientedSurfaces& othe
     throw CompletionError(stage, "There is nothing to reconstruct: no faces with an area and no points.");
   PoissonSolution solution =
       solve_screened_poisson(lattice, samples, options.poisson, progress.part(0.3, 1, stage));
-  PoissonOracle oracle{std::move(solution.field), {}, {}};
+  PoissonOracle oracle{std::move(solution.field), std::move(samples), {}};
   oracle.field.set_interpolation(options.interpolation);
-  for (const OrientedSample& sample : samples) oracle.sample_positions.push_back(sample.position);
-  oracle.figures.samples = samples.size();
+  oracle.figures.samples = oracle.samples.size();
   oracle.figures.cubes = oracle.field.octree().octree().size();
   oracle.figures.depth = oracle.field.octree().depth();
   oracle.figures.levels = std::move(solution.levels);

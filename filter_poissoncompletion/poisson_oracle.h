@@ -45,7 +45,7 @@ struct PoissonOracleFigures {
 
 struct PoissonOracle {
   OctreeField field;
-  std::vector<Vector3> sample_positions;
+  std::vector<OrientedSample> samples;
   PoissonOracleFigures figures;
 };
 

@@ -24,13 +24,13 @@ constexpr double uniform_edge = 2, longest_edge = 8, usual_distance = 0.1;
 // holds a sample. No component that is larger is missed.
 constexpr int levels_above = 3;
 
-std::vector<Vector3> starts(const OctreeField& field, const std::vector<Vector3>& samples) {
+std::vector<Vector3> starts(const OctreeField& field, const std::vector<OrientedSample>& samples) {
   const int depth = std::max(1, field.octree().depth() - levels_above);
   std::unordered_set<Index> taken;
   std::vector<Vector3> result;
-  for (const Vector3& p : samples)
-    if (taken.insert(field.octree().octree().find(field.lattice().snap(p), depth)).second)
-      result.push_back(p);
+  for (const OrientedSample& sample : samples)
+    if (taken.insert(field.octree().octree().find(field.lattice().snap(sample.position), depth)).second)
+      result.push_back(sample.position);
   return result;
 }
 
@@ -67,8 +67,8 @@ PoissonRemeshingResult remesh_by_poisson(const OrientedSurfaces& surface,
   meshing.criteria.smallest_angle = options.smallest_angle;
   if (options.adaptive) meshing.criteria.distance = options.distance.value_or(usual_distance * cube);
   const std::vector<Vector3> points =
-      find_surface_points(field, starts(field, oracle.sample_positions), longest_edge * cube,
-                          usual_distance * cube, progress.part(0.5, 0.55, "finding the surface"));
+      find_surface_points(field, starts(field, oracle.samples), longest_edge * cube, usual_distance * cube,
+                          progress.part(0.5, 0.55, "finding the surface"));
   result.mesh = mesh_surface(field, points, meshing, progress.part(0.55, 1, "meshing the surface"));
   clock.end_of("meshing the surface");
   result.oracle = std::move(oracle.figures);

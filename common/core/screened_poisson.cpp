@@ -81,6 +81,14 @@ std::array<std::array<double, 8>, 27> prolongation() {
   return weights;
 }
 
+// Calls `body(block)` for all blocks of a level in threads, never at once for two that have a corner in
+// common, and for those round one corner always in the same order.
+template <class Body>
+void for_blocks(const Level& level, const Progress& progress, const Body& body) {
+  for (const std::vector<Index>& group : level.groups)
+    for_each(group.size(), block_grain, progress, [&](std::size_t i) { body(group[i]); });
+}
+
 class Solver {
  public:
   Solver(const Lattice& lattice, const std::vector<OrientedSample>& samples,
@@ -109,9 +117,9 @@ class Solver {
   Place place_of(std::size_t sample) const;
   std::array<Index, 8> parent_corners(int depth, Index block) const;
 
-  template <class Body>
-  void for_blocks(const Level& level, const Progress& progress, const Body& body) const;
-  void prolong(int depth, const Values& coarse, Values& fine, const Progress& progress) const;
+  template <class Value>
+  void add_interpolated(int depth, const std::vector<Value>& coarse, std::vector<Value>& fine,
+                        const Progress& progress) const;
 
   Vectors spread_normals(int depth, const Progress& progress) const;
   std::vector<Values> right_hand_sides(const Progress& progress);
@@ -155,26 +163,15 @@ std::array<Index, 8> Solver::parent_corners(int depth, Index block) const {
   return octree_->corners(octree_->parent(octree_->level(depth).first_block + block));
 }
 
-// Calls `body(block)` for all blocks of a level in threads, never at once for two that have a corner in
-// common, and for those round one corner always in the same order.
-template <class Body>
-void Solver::for_blocks(const Level& level, const Progress& progress, const Body& body) const {
-  for (const std::vector<Index>& group : level.groups)
-    for_each(group.size(), block_grain, progress, [&](std::size_t i) { body(group[i]); });
-}
-
-// Sets a level's values to those of the coarser level between its corners.
-void Solver::prolong(int depth, const Values& coarse, Values& fine, const Progress& progress) const {
+// Adds to a level's values those of the coarser level between its corners.
+template <class Value>
+void Solver::add_interpolated(int depth, const std::vector<Value>& coarse, std::vector<Value>& fine,
+                              const Progress& progress) const {
   const Level& level = octree_->level(depth);
-  fine.resize(level.corner_count);
-  for_ranges(level.corner_count, grain, progress, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto [block, place] = level.owner[i];
-      const std::array<Index, 8> parents = parent_corners(depth, block);
-      double sum = 0;
-      for (int c = 0; c < 8; ++c) sum += prolongation_[place][c] * coarse[parents[c]];
-      fine[i] = sum;
-    }
+  for_each(level.corner_count, grain, progress, [&](std::size_t i) {
+    const auto [block, place] = level.owner[i];
+    const std::array<Index, 8> parents = parent_corners(depth, block);
+    for (int c = 0; c < 8; ++c) fine[i] += prolongation_[place][c] * coarse[parents[c]];
   });
 }
 
@@ -215,13 +212,7 @@ std::vector<Values> Solver::right_hand_sides(const Progress& progress) {
   for (int d = 1; d <= depth(); ++d) {
     descend(d, progress);
     density[d - 1] = spread_normals(d, progress);
-    if (d == 1) continue;
-    const Level& level = octree_->level(d);
-    for_each(level.corner_count, grain, progress, [&](std::size_t i) {
-      const auto [block, place] = level.owner[i];
-      const std::array<Index, 8> parents = parent_corners(d, block);
-      for (int c = 0; c < 8; ++c) density[d - 1][i] += prolongation_[place][c] * density[d - 2][parents[c]];
-    });
+    if (d > 1) add_interpolated(d, density[d - 2], density[d - 1], progress);
   }
   double entry[8][8][3];
   for (int i = 0; i < 8; ++i)
@@ -300,7 +291,7 @@ class LevelEquations {
   // result = A u, at free corners; 0 at the others.
   void apply(const Values& u, Values& result, const Progress& progress) const {
     std::fill(result.begin(), result.end(), 0.0);
-    each_block(progress, [&](Index block) {
+    for_blocks(level_, progress, [&](Index block) {
       const CornerOctree::BlockCorners& corners = level_.corners[block];
       std::array<double, 27> in, out{};
       for (int i = 0; i < 27; ++i) in[i] = u[corners[i]];
@@ -324,7 +315,7 @@ class LevelEquations {
     Values result(free_.size(), 0.0);
     double own = 0;
     for (double v : values_) own += v;
-    each_block(progress, [&](Index block) {
+    for_blocks(level_, progress, [&](Index block) {
       for (int child = 0; child < 8; ++child) {
         const Index number = matrix_of_[8 * block + child];
         int entry = 0;
@@ -352,11 +343,6 @@ class LevelEquations {
       }
       sum[i][child] += total;
     }
-  }
-  template <class Body>
-  void each_block(const Progress& progress, const Body& body) const {
-    for (const std::vector<Index>& group : level_.groups)
-      for_each(group.size(), block_grain, progress, [&](std::size_t i) { body(group[i]); });
   }
 
   const Level& level_;
@@ -448,10 +434,9 @@ PoissonSolution Solver::run(const Progress& progress) {
     const Progress part =
         progress.part(0.2 + 0.8 * std::pow(4, d - 1 - depth()), 0.2 + 0.8 * std::pow(4, d - depth()), stage);
     Values& u = values[d - 1];
-    if (d == 1)
-      u.assign(octree_->level(1).corner_count, options_.boundary == PoissonBoundary::dirichlet ? jump : 0.0);
-    else
-      prolong(d, values[d - 2], u, part);
+    u.assign(octree_->level(d).corner_count,
+             d == 1 && options_.boundary == PoissonBoundary::dirichlet ? jump : 0.0);
+    if (d > 1) add_interpolated(d, values[d - 2], u, part);
     descend(d, part);
     figures.push_back(solve_level(d, right[d - 1], u, part));
     part.update(1);

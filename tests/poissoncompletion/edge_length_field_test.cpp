@@ -26,12 +26,6 @@ std::vector<RimSample> two_rims() {
   return samples;
 }
 
-TEST(EdgeLengthField, UniformEverywhere) {
-  const EdgeLengthField field(0.3);
-  EXPECT_EQ(field.at({5, 6, 7}), 0.3);
-  EXPECT_TRUE(std::isinf(field.distance({5, 6, 7})));
-}
-
 TEST(EdgeLengthField, OneDensityIsThatEverywhere) {
   const EdgeLengthField field(circle(Vector3::Zero(), 1, 60, 0.1));
   for (const Vector3& p : {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(10, -20, 30)})
