@@ -75,7 +75,6 @@ class Run {
   AtomicVolumesResult result(CompletionReport report);
 
  private:
-  void refuse_sewn_loops();
   /// What space is divided by.
   const TriangleMesh& divided_mesh() const { return divisible_ ? divisible_->mesh : mesh_; }
   const MeshTopology& divided_topology() const { return divisible_ ? divisible_->topology : topology_; }
@@ -104,17 +103,6 @@ class Run {
   std::vector<PatchPiece> pieces_;
   std::vector<char> blocked_;  // loops whose patch has another one in it that is not to be closed
 };
-
-// Rims whose edges lie on each other have nothing between them that a patch could fill.
-void Run::refuse_sewn_loops() {
-  if (!divisible_ || !divisible_->merged) return;
-  for (std::size_t i = 0; i < loops_.size(); ++i)
-    for (std::size_t k = 0; k < loops_[i].faces.size() && is_targeted(report_.holes[i]); ++k) {
-      const Index h = half_edge_at(mesh_, loops_[i], k);
-      if (divisible_->topology.opposite[h] != MeshTopology::boundary)
-        report_.holes[i].reason = "edges of this rim lie on each other; apply 'Merge Close Vertices' first";
-    }
-}
 
 VolumeSolution Run::solve(int shift, const AtomicVolumesOptions& options,
                           const PreparedConstraints& constraints, const Progress& progress) const {
@@ -309,7 +297,7 @@ bool Run::close_with_triangles(const Progress& progress) {
 AtomicVolumesFigures Run::close(const Progress& progress) {
   StageClock clock(report_);
   divisible_ = make_divisible(mesh_, topology_, input_, progress);
-  refuse_sewn_loops();
+  if (divisible_ && divisible_->merged) refuse_sewn_rims(mesh_, divisible_->topology, loops_, report_.holes);
   const PreparedConstraints constraints(divided_mesh(), divided_topology(), divided(), options_.constraints,
                                         progress.part(0, 0, ""));
   AtomicVolumesFigures figures;
@@ -365,12 +353,10 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
   check_options(options);
   CompletionReport report;
   StageClock clock(report);
-  const MeshTopology topology = build_topology(mesh, progress.part(0, 0.05, "finding the boundary"));
-  const std::vector<BoundaryLoop> loops =
-      trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
-  report.holes = select_holes(mesh, loops, selection, options.holes);
-  target_islands(loops, report.holes);
-  Run run(mesh, topology, loops, options, report);
+  const OpenMesh open =
+      find_holes(mesh, selection, options.holes, progress.part(0, 0.1, "finding the holes"));
+  report.holes = open.holes;
+  Run run(mesh, open.topology, open.loops, options, report);
   clock.end_of("finding the holes");
   AtomicVolumesFigures figures;
   if (run.anything_to_do()) figures = run.close(progress.part(0.1, 1, "dividing space"));

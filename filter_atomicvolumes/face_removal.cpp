@@ -32,7 +32,6 @@ class Remover {
   std::optional<FaceRemoval> run(std::size_t limit, const Progress& progress);
 
  private:
-  std::vector<char> targeted_rims(const MeshTopology& topology, const Progress& progress) const;
   std::vector<Index> offending(const Progress& progress) const;
 
   const AtomicVolumesOptions& options_;
@@ -41,16 +40,13 @@ class Remover {
 };
 
 // Marks the half-edges of the loops that are to be closed; empty when there are none.
-std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Progress& progress) const {
-  const TriangleMesh& mesh = rest_.mesh;
-  const std::vector<BoundaryLoop> loops = trace_boundary_loops(mesh, topology, progress);
-  std::vector<HoleReport> holes = select_holes(mesh, loops, rest_.selection, options_.holes);
-  target_islands(loops, holes);
+std::vector<char> targeted_rims(const TriangleMesh& mesh, const OpenMesh& open) {
   std::vector<char> rims;
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (!is_targeted(holes[i])) continue;
+  for (std::size_t i = 0; i < open.loops.size(); ++i) {
+    if (!is_targeted(open.holes[i])) continue;
     rims.resize(3 * mesh.triangles.size(), 0);
-    for (std::size_t k = 0; k < loops[i].faces.size(); ++k) rims[half_edge_at(mesh, loops[i], k)] = 1;
+    for (std::size_t k = 0; k < open.loops[i].faces.size(); ++k)
+      rims[half_edge_at(mesh, open.loops[i], k)] = 1;
   }
   return rims;
 }
@@ -59,13 +55,13 @@ std::vector<char> Remover::targeted_rims(const MeshTopology& topology, const Pro
 // them the completion needs no other mesh to divide space by.
 std::vector<Index> Remover::offending(const Progress& progress) const {
   const TriangleMesh& mesh = rest_.mesh;
-  const MeshTopology topology = build_topology(mesh, progress);
-  const std::vector<char> rims = targeted_rims(topology, progress);
+  const OpenMesh open = find_holes(mesh, rest_.selection, options_.holes, progress);
+  const std::vector<char> rims = targeted_rims(mesh, open);
   if (rims.empty()) return {};
   const InputNeighbourhood neighbourhood(mesh);
-  const PreparedConstraints constraints(mesh, topology, neighbourhood, options_.constraints, progress);
+  const PreparedConstraints constraints(mesh, open.topology, neighbourhood, options_.constraints, progress);
   const VolumeSolution solution =
-      solve_volumes(mesh, topology, neighbourhood, options_, constraints, seed_, progress);
+      solve_volumes(mesh, open.topology, neighbourhood, options_, constraints, seed_, progress);
   return offending_faces(solution.mesh, solution.decomposition, rims);
 }
 

@@ -49,15 +49,6 @@ std::string describe(Sheet::Flaw flaw) {
   return "";
 }
 
-// Rims whose edges lie on each other have nothing between them that a patch could fill.
-void refuse_sewn_loops(const TriangleMesh& mesh, const MergedRims& merged,
-                       const std::vector<BoundaryLoop>& loops, std::vector<HoleReport>& holes) {
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    for (std::size_t k = 0; k < loops[i].faces.size() && is_targeted(holes[i]); ++k)
-      if (merged.topology.opposite[half_edge_at(mesh, loops[i], k)] != MeshTopology::boundary)
-        holes[i].reason = "edges of this rim lie on each other; apply 'Merge Close Vertices' first";
-}
-
 class Run {
  public:
   Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
@@ -72,13 +63,13 @@ class Run {
         function_(function),
         options_(options),
         report_(report),
+        targets_(loops_to_close(loops, report.holes)),
         field_(make_field()),
         cushion_(make_cushion()) {}
 
   std::vector<PatchPiece> pieces(RefinedCompletionFigures& figures, const Progress& progress);
 
  private:
-  std::vector<const BoundaryLoop*> targets() const;
   EdgeLengthField make_field() const;
   Cushion make_cushion() const;
 
@@ -91,20 +82,14 @@ class Run {
   const ImplicitFunction& function_;
   const RefinedCompletionOptions& options_;
   CompletionReport& report_;
+  const std::vector<const BoundaryLoop*> targets_;
   const EdgeLengthField field_;
   const Cushion cushion_;
 };
 
-std::vector<const BoundaryLoop*> Run::targets() const {
-  std::vector<const BoundaryLoop*> result;
-  for (std::size_t i = 0; i < loops_.size(); ++i)
-    if (is_targeted(report_.holes[i]) || may_join(loops_[i], report_.holes[i])) result.push_back(&loops_[i]);
-  return result;
-}
-
 EdgeLengthField Run::make_field() const {
   std::vector<RimSample> samples;
-  for (const BoundaryLoop* loop : targets()) {
+  for (const BoundaryLoop* loop : targets_) {
     const Rim rim = collect_rim(mesh_, topology_, *loop);
     const std::vector<RimSample> more = smoothed_samples(rim.positions, rim.edge_length);
     samples.insert(samples.end(), more.begin(), more.end());
@@ -129,7 +114,7 @@ Cushion Run::make_cushion() const {
 std::vector<PatchPiece> Run::pieces(RefinedCompletionFigures& figures, const Progress& progress) {
   StageClock clock(report_);
   const InitialPoints points = choose_initial_points(
-      mesh_, topology_, targets(), options_.rings,
+      mesh_, topology_, targets_, options_.rings,
       [this](const Vector3& at) { return near_rims * field_.at(at); }, input_.blocks(),
       options_.sample_share);
   std::vector<Vector3> positions;
@@ -182,7 +167,7 @@ RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTop
   RefinedCompletion result;
   std::vector<PatchPiece> pieces;
   const std::unique_ptr<MergedRims> merged = merge_rims(mesh, topology);
-  if (merged) refuse_sewn_loops(mesh, *merged, loops, report.holes);
+  if (merged) refuse_sewn_rims(mesh, merged->topology, loops, report.holes);
   if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
     Run run(mesh, topology, loops, merged.get(), input, function, options, report);
     pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/core/hole_targets.h"
-#include "common/core/mesh_topology.h"
 #include "common/core/parameter_checks.h"
 #include "common/core/patch_check.h"
 #include "common/core/piece_results.h"
@@ -27,16 +26,13 @@ constexpr double thinnest_wall = 0.25;
 constexpr double cube_growth = 0.125;
 
 // How fine the octree has to be at the rims: as their edges, and finer in thin walls.
-EdgeLengthField resolution(const TriangleMesh& mesh, const MeshTopology& topology,
-                           const std::vector<BoundaryLoop>& loops, const std::vector<HoleReport>& holes,
-                           const InputNeighbourhood& input) {
+EdgeLengthField resolution(const TriangleMesh& mesh, const OpenMesh& open, const InputNeighbourhood& input) {
   std::vector<RimSample> samples;
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (!is_targeted(holes[i]) && !may_join(loops[i], holes[i])) continue;
-    const Rim rim = collect_rim(mesh, topology, loops[i]);
+  for (const BoundaryLoop* loop : loops_to_close(open.loops, open.holes)) {
+    const Rim rim = collect_rim(mesh, open.topology, *loop);
     std::vector<double> lengths = rim.edge_length;
-    for (std::size_t k = 0; k < loops[i].faces.size(); ++k) {
-      const Triangle& t = mesh.triangles[loops[i].faces[k]];
+    for (std::size_t k = 0; k < loop->faces.size(); ++k) {
+      const Triangle& t = mesh.triangles[loop->faces[k]];
       const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
       const Vector3 normal = (b - a).cross(c - a).normalized();
       const auto wall = wall_thickness(input.blocks(), (a + b + c) / 3, normal, thinnest_wall * lengths[k],
@@ -80,15 +76,13 @@ PoissonCompletionResult complete_by_poisson(const TriangleMesh& mesh, const Mesh
   PoissonCompletionResult result;
   CompletionReport report;
   StageClock clock(report);
-  const MeshTopology topology = build_topology(mesh, progress.part(0, 0.05, "finding the boundary"));
-  const std::vector<BoundaryLoop> loops =
-      trace_boundary_loops(mesh, topology, progress.part(0.05, 0.1, "tracing boundary loops"));
-  report.holes = select_holes(mesh, loops, selection, options.holes);
-  target_islands(loops, report.holes);
+  const OpenMesh open =
+      find_holes(mesh, selection, options.holes, progress.part(0, 0.1, "finding the holes"));
   clock.end_of("finding the holes");
-  if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
+  report.holes = open.holes;
+  if (open.any_targeted()) {
     const InputNeighbourhood input(mesh);
-    const EdgeLengthField cubes = resolution(mesh, topology, loops, report.holes, input);
+    const EdgeLengthField cubes = resolution(mesh, open, input);
     const CubeSizes sizes{
         [&](const Vector3& at) { return std::max(cubes.at(at), cube_growth * cubes.distance(at)); },
         cubes.shortest()};
@@ -96,7 +90,7 @@ PoissonCompletionResult complete_by_poisson(const TriangleMesh& mesh, const Mesh
                                        progress.part(0.1, 0.5, "building the oracle"));
     clock.end_of("building the oracle");
     RefinedCompletion refined =
-        complete_by_refinement(mesh, topology, loops, input, oracle.field, options.refinement,
+        complete_by_refinement(mesh, open.topology, open.loops, input, oracle.field, options.refinement,
                                std::move(report), progress.part(0.5, 1, "refining the surface"));
     result.completion = std::move(refined.completion);
     result.figures = {std::move(oracle.figures), refined.figures};

@@ -41,11 +41,6 @@ HoleReport& merge_holes(const std::vector<std::size_t>& loops, std::vector<HoleR
 
 }  // namespace
 
-bool may_join(const BoundaryLoop& loop, const HoleReport& hole) {
-  return loop.defect == LoopDefect::isolated_triangle &&
-         hole.reason == describe(LoopDefect::isolated_triangle);
-}
-
 std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vector<BoundaryLoop>& loops,
                                 std::vector<HoleReport>& holes,
                                 const std::function<std::string(Sheet::Flaw)>& describe_flaw) {

@@ -25,8 +25,4 @@ std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vect
 Completion gather_pieces(const TriangleMesh& mesh, const std::vector<PatchPiece>& pieces,
                          CompletionReport report);
 
-/// A rim that no patch should close by itself, but that may be part of a larger hole: that of a single
-/// triangle.
-bool may_join(const BoundaryLoop& loop, const HoleReport& hole);
-
 }  // namespace meshcomplete

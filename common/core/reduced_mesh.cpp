@@ -4,10 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "common/core/boundary_loops.h"
 #include "common/core/error.h"
 #include "common/core/hole_targets.h"
-#include "common/core/mesh_topology.h"
 
 namespace meshcomplete {
 namespace {
@@ -49,14 +47,11 @@ void remove_faces(ReducedMesh& rest, const std::vector<Index>& faces, bool selec
 ReducedMesh without_rings(const TriangleMesh& mesh, const MeshSelection& selection,
                           const HoleSelectionOptions& options, int rings, const Progress& progress) {
   ReducedMesh rest = unreduced(mesh, selection);
-  const std::vector<BoundaryLoop> loops =
-      trace_boundary_loops(mesh, build_topology(mesh, progress), progress);
-  std::vector<HoleReport> holes = select_holes(mesh, loops, selection, options);
-  target_islands(loops, holes);
+  const OpenMesh open = find_holes(mesh, selection, options, progress);
   std::vector<char> on_rim(mesh.vertices.size(), 0);
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    if (is_targeted(holes[i]))
-      for (Index v : loops[i].vertices) on_rim[v] = 1;
+  for (std::size_t i = 0; i < open.loops.size(); ++i)
+    if (is_targeted(open.holes[i]))
+      for (Index v : open.loops[i].vertices) on_rim[v] = 1;
   for (int ring = 0; ring < rings; ++ring) {
     progress.check();
     std::vector<Index> faces;
