@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "common/core/edge_length_field.h"
 #include "common/core/error.h"
 #include "common/core/hole_targets.h"
 #include "common/core/patch_pieces.h"
@@ -16,7 +17,6 @@
 #include "filter_poissoncompletion/coinciding_points.h"
 #include "filter_poissoncompletion/cushion.h"
 #include "filter_poissoncompletion/delaunay_refinement.h"
-#include "filter_poissoncompletion/edge_length_field.h"
 #include "filter_poissoncompletion/initial_points.h"
 #include "filter_poissoncompletion/surface_gaps.h"
 

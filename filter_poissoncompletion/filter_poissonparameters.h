@@ -4,10 +4,10 @@
 
 #include <vector>
 
+#include "common/core/poisson_oracle.h"
 #include "common/host/close_holes_parameters.h"
 #include "common/host/filter_declaration.h"
 #include "common/host/other_layers.h"
-#include "filter_poissoncompletion/poisson_oracle.h"
 
 namespace meshcomplete {
 namespace host {

@@ -10,9 +10,9 @@
 #include "common/core/hole_selection.h"
 #include "common/core/mesh.h"
 #include "common/core/patch.h"
+#include "common/core/poisson_oracle.h"
 #include "common/core/progress.h"
 #include "filter_poissoncompletion/completion_by_refinement.h"
-#include "filter_poissoncompletion/poisson_oracle.h"
 
 namespace meshcomplete {
 

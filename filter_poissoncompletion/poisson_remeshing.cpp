@@ -8,8 +8,8 @@
 #include "common/core/parameter_checks.h"
 #include "common/core/patch.h"
 #include "common/core/stage_clock.h"
+#include "common/core/surface_sampling.h"
 #include "filter_poissoncompletion/surface_meshing.h"
-#include "filter_poissoncompletion/surface_sampling.h"
 
 namespace meshcomplete {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/core/mesh.h"
+#include "common/core/poisson_oracle.h"
 #include "common/core/progress.h"
-#include "filter_poissoncompletion/poisson_oracle.h"
 
 namespace meshcomplete {
 

@@ -1,4 +1,4 @@
-#include "filter_poissoncompletion/surface_sampling.h"
+#include "common/core/surface_sampling.h"
 
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>

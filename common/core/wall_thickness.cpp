@@ -1,4 +1,4 @@
-#include "filter_poissoncompletion/wall_thickness.h"
+#include "common/core/wall_thickness.h"
 
 #include <Eigen/Geometry>
 

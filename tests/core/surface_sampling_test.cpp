@@ -1,4 +1,4 @@
-#include "filter_poissoncompletion/surface_sampling.h"
+#include "common/core/surface_sampling.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

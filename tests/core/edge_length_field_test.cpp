@@ -1,4 +1,4 @@
-#include "filter_poissoncompletion/edge_length_field.h"
+#include "common/core/edge_length_field.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "filter_poissoncompletion/poisson_oracle.h"
+#include "common/core/poisson_oracle.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/core/error.h"
 #include "common/core/parameter_checks.h"
-#include "filter_poissoncompletion/surface_sampling.h"
+#include "common/core/surface_sampling.h"
 
 namespace meshcomplete {
 namespace {
