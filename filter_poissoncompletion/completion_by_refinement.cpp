@@ -172,12 +172,15 @@ RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTop
     Run run(mesh, topology, loops, merged.get(), input, function, options, report);
     pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));
     choose_pieces(pieces, loops, report.holes, [](Sheet::Flaw flaw) { return describe(flaw); });
+    if (options.stretches) keep_pieces_at(*options.stretches, pieces, report.holes);
     StageClock clock(report);
     FinishingOptions finishing = options.finishing;
     if (!finishing.edge_length) finishing.edge_length = options.edge_length;
     const PieceFinisher finisher(mesh, topology, input, input, finishing);
     finisher.finish(pieces, 0, progress.part(0.7, 0.95, "joining the patches"));
-    finisher.separate(pieces, progress.part(0.95, 1, "comparing the patches"));
+    finisher.separate(pieces, progress.part(0.95, 0.98, "comparing the patches"));
+    if (options.stretches)
+      cut_strips(mesh, loops, *options.stretches, pieces, progress.part(0.98, 1, "cutting out strips"));
     clock.end_of("joining the patches");
   }
   progress.update(1);

@@ -10,6 +10,7 @@
 #include "common/core/implicit_function.h"
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/partial_fill.h"
 #include "common/core/patch.h"
 #include "common/core/patch_check.h"
 #include "common/core/progress.h"
@@ -37,6 +38,8 @@ struct RefinedCompletionOptions {
   /// What is done to the patches after they were cut out. Without fairing they keep the function's shape.
   FinishingOptions finishing = {true, SurfaceEnergy::normal_variation, std::nullopt, std::nullopt,
                                 "as cut out"};
+  /// Absent: holes are closed whole. Else only along these.
+  std::optional<std::vector<RimStretch>> stretches;
 };
 
 struct RefinedCompletionFigures {

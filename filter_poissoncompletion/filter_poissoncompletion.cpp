@@ -34,6 +34,11 @@ std::vector<ParameterDeclaration> guide_parameters() {
 
 std::vector<ParameterDeclaration> refinement_parameters() {
   return {
+      switch_parameter("PartialFill", "Fill only along the selection",
+                       "Of each hole only a strip is filled, along the part of its boundary whose vertices "
+                       "are selected, or corners of selected faces: from one end of the part straight to the "
+                       "other, or with several parts from one to the next.",
+                       false),
       integer_parameter("RemoveRings", "Remove rings",
                         "So many rings of faces are removed round each hole before it is closed, for noisy "
                         "boundaries. More than 0 makes the result a new layer, and the log names them.",
@@ -60,6 +65,11 @@ PoissonCompletionOptions options_from(const ParameterValues& values) {
                                                        SurfaceEnergy::normal_variation};
   PoissonCompletionOptions options;
   options.oracle = oracle_options(values);
+  options.partial_fill = values.boolean("PartialFill");
+  if (options.partial_fill && values.integer("RemoveRings") > 0)
+    throw CompletionError("reading the parameters",
+                          "\"PartialFill\" goes along the boundary that the selection is on, and "
+                          "\"RemoveRings\" would remove it. Use one of them at a time.");
   if (values.real("EdgeLength") > 0) options.refinement.edge_length = values.real("EdgeLength");
   options.refinement.rings = values.integer("Rings");
   if (values.real("CushionRadius") > 0) options.refinement.cushion_radius = values.real("CushionRadius");

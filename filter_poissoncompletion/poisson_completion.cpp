@@ -35,11 +35,17 @@ PoissonCompletionResult complete_by_poisson(const TriangleMesh& mesh, const Mesh
                                             const PoissonCompletionOptions& options,
                                             const Progress& progress) {
   check_options(options);
+  HoleSelectionOptions holes = options.holes;
+  if (options.partial_fill) holes.selected_only = false;
   PoissonCompletionResult result;
   CompletionReport report;
   StageClock clock(report);
-  const OpenMesh open =
-      find_holes(mesh, selection, options.holes, progress.part(0, 0.1, "finding the holes"));
+  OpenMesh open = find_holes(mesh, selection, holes, progress.part(0, 0.1, "finding the holes"));
+  RefinedCompletionOptions refinement = options.refinement;
+  if (options.partial_fill) {
+    refinement.stretches = selected_stretches(mesh, open.loops, selection);
+    target_stretches(mesh, *refinement.stretches, open);
+  }
   clock.end_of("finding the holes");
   report.holes = open.holes;
   if (open.any_targeted()) {
@@ -48,7 +54,7 @@ PoissonCompletionResult complete_by_poisson(const TriangleMesh& mesh, const Mesh
                                                   progress.part(0.1, 0.5, "building the oracle"));
     clock.end_of("building the oracle");
     RefinedCompletion refined =
-        complete_by_refinement(mesh, open.topology, open.loops, input, oracle.field, options.refinement,
+        complete_by_refinement(mesh, open.topology, open.loops, input, oracle.field, refinement,
                                std::move(report), progress.part(0.5, 1, "refining the surface"));
     result.completion = std::move(refined.completion);
     result.figures = {std::move(oracle.figures), refined.figures};

@@ -18,6 +18,9 @@ namespace meshcomplete {
 
 struct PoissonCompletionOptions {
   HoleSelectionOptions holes;
+  /// Instead of whole holes only strips along the selected parts of their rims are filled, see
+  /// `selected_stretches` and `cut_strip`. `holes.selected_only` means nothing then.
+  bool partial_fill = false;
   /// What a user adds to the mesh to say how it goes on; not completed itself. Source: the paper,
   /// sections 3.2 and 4.5.
   OrientedSurfaces guides;

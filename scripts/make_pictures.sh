@@ -62,6 +62,9 @@ poisson unlike-halves unlike --from=1,-0.6,0.5 --up=0,0,1 --width=0.95 --edges
 poisson outer-half-torus torus --from=1,-0.6,1.1 --up=0,0,1 --width=0.85
 poisson outer-half-torus guided --from=1,-0.6,1.1 --up=0,0,1 --width=0.85 \
   --with "$work/guide-tube.off" -p GuideLayer=guide-tube.off -p Fairing=None
+picture "$work/gap.off" "$images/poisson-strip" -f "Conditional Vertex Selection" \
+  -p "condSelect=(y > -36) && (y < -14) && (z < 12) && (abs(x - 26) < 5)" \
+  -f "Close Holes: Poisson-driven" -p PartialFill=true --size=480,360 --from=0.35,0.12,-1 --width=0.25 --at=24,-24,12
 picture "$cache/data/mech-holes-shark.off" "$images/poisson-shark" -f "Close Holes: Poisson-driven" --size=480,360 \
   --from=-1,-0.3,0.3 --width=1
 # Those are the same as with atomic volumes.

@@ -32,16 +32,6 @@ void check_options(const TriangleMesh& mesh, const MeshSelection& selection,
         "vertices at the holes, or switch off 'Selected'.");
 }
 
-// For every vertex, whether it is selected or a corner of a selected face.
-std::vector<char> touched_vertices(const TriangleMesh& mesh, const MeshSelection& selection) {
-  std::vector<char> touched = selection.vertices;
-  touched.resize(mesh.vertices.size(), 0);
-  for (std::size_t f = 0; f < selection.faces.size(); ++f)
-    if (selection.faces[f])
-      for (Index corner : mesh.triangles[f]) touched[corner] = 1;
-  return touched;
-}
-
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
@@ -66,6 +56,15 @@ std::size_t longest(const std::vector<HoleReport>& holes) {
 }
 
 }  // namespace
+
+std::vector<char> touched_vertices(const TriangleMesh& mesh, const MeshSelection& selection) {
+  std::vector<char> touched = selection.vertices;
+  touched.resize(mesh.vertices.size(), 0);
+  for (std::size_t f = 0; f < selection.faces.size(); ++f)
+    if (selection.faces[f])
+      for (Index corner : mesh.triangles[f]) touched[corner] = 1;
+  return touched;
+}
 
 std::vector<HoleReport> select_holes(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops,
                                      const MeshSelection& selection, const HoleSelectionOptions& options) {

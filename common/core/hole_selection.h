@@ -25,6 +25,9 @@ struct HoleSelectionOptions {
   bool keep_largest = false;             ///< leave the loop with the greatest perimeter open
 };
 
+/// For every vertex, whether it is selected or a corner of a selected face. Cost: O(vertices + faces).
+std::vector<char> touched_vertices(const TriangleMesh& mesh, const MeshSelection& selection);
+
 /// One report per loop. `skipped` with a reason: not asked for, or nothing that a patch should close (the rim
 /// of a single triangle or of an open sheet). `failed` with a reason: asked for, but the loop has a defect.
 /// `failed` without a reason: to be worked on. Throws `CompletionError` when the options contradict each

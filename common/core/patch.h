@@ -37,7 +37,7 @@ void append(Patch& patch, const Patch& other);
 
 enum class HoleOutcome {
   closed,   ///< a patch was added
-  partial,  ///< part of the boundary was closed
+  partial,  ///< part of the boundary was closed, as asked
   skipped,  ///< not asked for, or nothing that a patch could close
   failed,   ///< asked for, tried, left open
 };
@@ -53,7 +53,7 @@ struct HoleReport {
   Vector3 centre = Vector3::Zero();  ///< mean of the loop's vertices
   HoleOutcome outcome = HoleOutcome::skipped;
   std::string route;   ///< which way led to the patch, e.g. "projected, thin plate"
-  std::string reason;  ///< why it was skipped or failed; empty when closed
+  std::string reason;  ///< why it was skipped or failed, or which part was closed; empty when closed
   std::size_t vertices_added = 0;
   std::size_t faces_added = 0;
 };

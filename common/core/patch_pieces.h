@@ -26,6 +26,7 @@ struct PatchPiece {
   std::optional<RimPatch> rough;  ///< its first triangles, joined to the mesh
   Patch patch;
   std::string route;   ///< how it was finished
+  std::string part;    ///< what of its holes the patch closes; empty when all
   std::string defect;  ///< why there is no patch; empty when there is
 };
 

@@ -72,14 +72,15 @@ Completion gather_pieces(const TriangleMesh& mesh, const std::vector<PatchPiece>
   for (const std::vector<std::size_t>& group : group_by_loops(pieces)) {
     if (!pieces[group.front()].wanted) continue;
     bool closed = true;
-    std::string defect;
+    std::string part, defect;
     for (std::size_t i : group) {
       closed &= pieces[i].defect.empty();
+      if (part.empty()) part = pieces[i].part;
       if (defect.empty()) defect = pieces[i].defect;
     }
     HoleReport& hole = merge_holes(loops_of(pieces, group), report.holes, merged);
-    hole.outcome = closed ? HoleOutcome::closed : HoleOutcome::failed;
-    hole.reason = defect;
+    hole.outcome = !closed ? HoleOutcome::failed : part.empty() ? HoleOutcome::closed : HoleOutcome::partial;
+    hole.reason = closed ? part : defect;
     for (std::size_t i : group) {
       if (!closed) break;
       hole.route = pieces[i].route;

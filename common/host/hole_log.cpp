@@ -29,7 +29,9 @@ QString describe_hole(std::size_t number, const HoleReport& hole) {
     case HoleOutcome::closed:
       return start + QString("closed with %1%2").arg(counted(hole.faces_added, "face", "faces"), route);
     case HoleOutcome::partial:
-      return start + "closed in part" + route + reason;
+      return start +
+             QString("closed in part with %1%2").arg(counted(hole.faces_added, "face", "faces"), route) +
+             reason;
     case HoleOutcome::skipped:
       return start + "left open" + reason;
     case HoleOutcome::failed:

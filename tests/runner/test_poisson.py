@@ -153,6 +153,65 @@ class Holes(Case):
         self.assertIn("NOT closed: edges of this rim lie on each other", self.log)
 
 
+
+class Strips(Case):
+    """The user has selected a part of the boundary."""
+
+    def fill_in_part(self, condition, *parameters, code=0):
+        """Fills along the vertices for which MeshLab's expression holds."""
+        result = self.check(code, "-i", "in.ply", "-f", "Conditional Vertex Selection", "-p", "condSelect=" + condition,
+                            "-f", FILTER, "-p", "PartialFill=true", *parameters, "-f", CHECK, "-o", "out.ply",
+                            "--report", "report.json")
+        self.log = result.stdout
+        self.assertIn("Self-intersecting pairs of faces: 0", self.log)
+        self.assertIn("Orientation: consistent", self.log)
+        return Ply(self.path("out.ply"))
+
+    def test_along_one_part_of_a_rim(self):
+        before = self.write_fine((0.5, 1.1))
+        after = self.fill_in_part("(x > 0.2)")
+        self.assert_kept(before, after)
+        (hole,) = self.read_report()["holes"]
+        self.assertEqual(hole["outcome"], "partial")
+        self.assertRegex(hole["reason"], r"as asked, along \d+ of 32 edges")
+        self.assertGreater(hole["faces_added"], 5)
+        self.assertTrue(all(p[0] > 0 for p in after.points[len(before.points):]), "the other half is open still")
+        self.assertIn("Boundary loops: 1 ", self.log)
+
+    def test_a_strip_across_a_gap_and_then_the_rest(self):
+        before = self.write_fine((-0.2, 0.2))
+        strip = self.fill_in_part("(y > 0.75) && (abs(z) < 0.4)")
+        self.assert_kept(before, strip)
+        (hole,) = self.read_report()["holes"]
+        self.assertEqual((hole["outcome"], len(hole["loops"])), ("partial", 2))
+        self.assertEqual(self.components(), 1)
+        self.assertIn("Boundary loops: 1 ", self.log)
+        os.replace(self.path("out.ply"), self.path("in.ply"))
+        self.assert_kept(strip, self.close())
+        self.assert_closed()
+
+    def test_other_holes_stay_open(self):
+        before = self.write_fine((0.5, 1.1), (-1.1, -0.8))
+        after = self.fill_in_part("(x > 0.2) && (z > 0)")
+        self.assertTrue(all(p[2] > 0 for p in after.points[len(before.points):]))
+        self.assertEqual(sorted(hole["outcome"] for hole in self.read_report()["holes"]), ["partial", "skipped"])
+
+    def test_a_rim_selected_whole_is_closed_whole(self):
+        self.write_fine((0.5, 1.1), (-1.1, -0.8))
+        self.fill_in_part("(z > 0)")
+        self.assertEqual(sorted(hole["outcome"] for hole in self.read_report()["holes"]), ["closed", "skipped"])
+        self.assertIn("Boundary loops: 1 ", self.log)
+
+    def test_messages(self):
+        before = self.write_fine((0.5, 1.1))
+        self.assertIn("no edge of the boundary is selected", self.refused(1, "PartialFill=true"))
+        self.assertIn("Use one of them at a time", self.refused(1, "PartialFill=true", "RemoveRings=1"))
+        # Eight parts of one rim.
+        after = self.fill_in_part("(abs(sin(4 * atan2(y, x))) > 0.5)", code=3)
+        self.assertIn("select at most 7", self.read_report()["holes"][0]["reason"])
+        self.assertEqual((bits(after.points), after.triangles), (bits(before.points), before.triangles))
+
+
 class Results(Case):
     def test_the_report(self):
         before = self.write_fine((0.6, 0.75))
@@ -331,7 +390,7 @@ class Messages(Case):
         text = self.check(0, "--describe", FILTER).stdout
         for name in ("Selected", "MaxHoleEdges", "MaxHolePerimeter", "KeepLargest", "NewFaceSelected", "AsNewLayer", "GuideLayer",
                      "GuideVisible", "MinDepth", "MaxDepth", "Scale", "Boundary", "Screening", "Samples", "Interpolation",
-                     "RemoveRings", "EdgeLength", "Rings", "CushionRadius", "Fairing"):
+                     "PartialFill", "RemoveRings", "EdgeLength", "Rings", "CushionRadius", "Fairing"):
             self.assertIn(f"\n  {name}\n", text)
         self.assertIn("Marco Centin", text)
 

@@ -108,20 +108,19 @@ void Session::print_open_holes(const CompletionReport& report) {
   std::size_t open = 0;
   for (std::size_t number = 0; number < report.holes.size(); ++number) {
     const HoleReport& hole = report.holes[number];
-    if (hole.outcome != HoleOutcome::failed && hole.outcome != HoleOutcome::partial) continue;
+    if (hole.outcome != HoleOutcome::failed) continue;
     // The filter's own log has said the same, unless nobody has seen it.
     if (!options_.quiet || open++ >= open_holes_listed) continue;
     console_.warn(
-        QString("hole %1 (%2 edges, near %3, %4, %5) is %6: %7.")
+        QString("hole %1 (%2 edges, near %3, %4, %5) is open: %6.")
             .arg(number + 1)
             .arg(hole.edges)
             .arg(hole.centre.x())
             .arg(hole.centre.y())
             .arg(hole.centre.z())
-            .arg(hole.outcome == HoleOutcome::partial ? "partly open" : "open")
             .arg(hole.reason.empty() ? "no reason given" : QString::fromStdString(hole.reason).simplified()));
   }
-  open = report.count(HoleOutcome::failed) + report.count(HoleOutcome::partial);
+  open = report.count(HoleOutcome::failed);
   if (open > 0) console_.warn(QString("%1 of %2 holes were left open.").arg(open).arg(report.holes.size()));
 }
 
