@@ -9,6 +9,12 @@
 namespace meshcomplete {
 namespace {
 
+// Selections at ragged rims are full of gaps. Longer ones than this are meant.
+constexpr std::size_t most_interrupted = 6;
+
+// Shorter ones are left out where their loop has longer ones.
+constexpr std::size_t shortest_stretch = 3;
+
 constexpr const char* not_selected = "not selected";
 
 using Bounds = Eigen::AlignedBox3d;
@@ -30,6 +36,52 @@ std::vector<char> loops_with(const std::vector<RimStretch>& stretches, std::size
   return with;
 }
 
+// Those of one loop, from an edge on that is not selected.
+std::vector<RimStretch> runs_of(std::size_t loop, const std::vector<char>& selected) {
+  const std::size_t count = selected.size();
+  const auto start =
+      static_cast<std::size_t>(std::find(selected.begin(), selected.end(), 0) - selected.begin());
+  if (start == count) return {{loop, 0, count}};
+  std::vector<RimStretch> runs;
+  for (std::size_t k = start + 1; k < start + count; ++k) {
+    if (!selected[k % count]) continue;
+    if (selected[(k - 1) % count])
+      ++runs.back().edges;
+    else
+      runs.push_back({loop, k, 1});
+  }
+  return runs;
+}
+
+// Whether what is between two runs counts for nothing: short, and no longer than one of them.
+bool interrupted(const RimStretch& run, const RimStretch& next, std::size_t between) {
+  return between <= std::min(most_interrupted, std::max(run.edges, next.edges));
+}
+
+std::vector<RimStretch> stretches_of(const std::vector<RimStretch>& runs, std::size_t count) {
+  std::vector<RimStretch> stretches;
+  for (const RimStretch& run : runs) {
+    RimStretch* last = stretches.empty() ? nullptr : &stretches.back();
+    if (last != nullptr && interrupted(*last, run, run.first - last->first - last->edges))
+      last->edges = run.first + run.edges - last->first;
+    else
+      stretches.push_back(run);
+  }
+  if (stretches.empty() || stretches.front().edges == count) return stretches;
+  RimStretch &first = stretches.front(), &last = stretches.back();
+  const std::size_t between = first.first + count - last.first - last.edges;
+  if (interrupted(last, first, between)) {
+    if (stretches.size() == 1) return {{first.loop, 0, count}};
+    last.edges += between + first.edges;
+    stretches.erase(stretches.begin());
+  }
+  const auto is_short = [](const RimStretch& stretch) { return stretch.edges < shortest_stretch; };
+  if (!std::all_of(stretches.begin(), stretches.end(), is_short))
+    stretches.erase(std::remove_if(stretches.begin(), stretches.end(), is_short), stretches.end());
+  for (RimStretch& stretch : stretches) stretch.first %= count;
+  return stretches;
+}
+
 }  // namespace
 
 std::vector<RimStretch> selected_stretches(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops,
@@ -38,23 +90,11 @@ std::vector<RimStretch> selected_stretches(const TriangleMesh& mesh, const std::
   std::vector<RimStretch> stretches;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const std::vector<Index>& vertices = loops[i].vertices;
-    const std::size_t count = vertices.size();
-    const auto selected = [&](std::size_t k) {
-      return touched[vertices[k % count]] && touched[vertices[(k + 1) % count]];
-    };
-    std::size_t gap = 0;  // an edge that is not selected
-    while (gap < count && selected(gap)) ++gap;
-    if (gap == count) {
-      stretches.push_back({i, 0, count});
-      continue;
-    }
-    for (std::size_t k = gap + 1; k < gap + count; ++k) {
-      if (!selected(k)) continue;
-      if (selected(k - 1))
-        ++stretches.back().edges;
-      else
-        stretches.push_back({i, k % count, 1});
-    }
+    std::vector<char> selected(vertices.size());
+    for (std::size_t k = 0; k < vertices.size(); ++k)
+      selected[k] = touched[vertices[k]] && touched[vertices[(k + 1) % vertices.size()]];
+    const std::vector<RimStretch> more = stretches_of(runs_of(i, selected), vertices.size());
+    stretches.insert(stretches.end(), more.begin(), more.end());
   }
   if (stretches.empty())
     throw CompletionError(

@@ -13,8 +13,9 @@
 
 namespace meshcomplete {
 
-/// The longest stretches of the loops of which every vertex is selected or a corner of a selected face.
-/// Ordered by loop. Throws CompletionError when there are none. Cost: O(faces).
+/// The stretches of the loops of which every vertex is selected or a corner of a selected face, but for
+/// short interruptions (six edges, and no more than a run beside them); those of one or two edges only where
+/// their loop has no others. Ordered by loop. Throws CompletionError when there are none. Cost: O(faces).
 std::vector<RimStretch> selected_stretches(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops,
                                            const MeshSelection& selection);
 

@@ -15,10 +15,13 @@ namespace meshcomplete {
 namespace {
 
 // Up to how many edges an end of a stretch is moved along its rim.
-constexpr std::size_t most_moved = 4;
+constexpr std::size_t most_moved = 16;
 
 // How much longer a path has to be for that, in parts of the way along the rim.
 constexpr double moving_price = 4;
+
+// How much longer a path from one stretch to another may be than one from its end to its own beginning.
+constexpr double bay_price = 8;
 
 // The triangles that a geodesic is looked for in: as far as so many times the length of a path along edges.
 constexpr double around_path = 1.3;
@@ -41,7 +44,8 @@ double distance(const Vector3& p, const std::vector<Vector3>& way) {
   return least;
 }
 
-// Which start each end is to be joined to so that all paths together are as short as can be.
+// Which start each end is to be joined to so that all paths together are as short as can be. Joined to
+// itself a stretch is closed as a bay; with two that face each other a strip across is meant.
 std::vector<std::size_t> shortest_pairs(const std::vector<std::vector<double>>& lengths) {
   std::vector<std::size_t> order(lengths.size()), best;
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -49,7 +53,7 @@ std::vector<std::size_t> shortest_pairs(const std::vector<std::vector<double>>& 
   do {
     double total = 0;
     for (std::size_t i = 0; i < order.size(); ++i)
-      total += order[i] == i && order.size() > 1 ? PatchPaths::unreached : lengths[i][order[i]];
+      total += (order[i] == i && order.size() > 1 ? bay_price : 1) * lengths[i][order[i]];
     if (total >= least) continue;
     least = total;
     best = order;

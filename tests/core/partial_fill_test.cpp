@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "common/core/error.h"
 #include "tests/support/complexes.h"
@@ -89,7 +90,7 @@ TEST(PartialFill, StretchesAreTheLongestRunsOfSelectedEdges) {
   const std::vector<BoundaryLoop> loops = test::loops_of(mesh);
   ASSERT_EQ(loops.size(), 3u);
   const std::size_t count = loops[0].vertices.size();
-  ASSERT_GE(count, 9u);
+  ASSERT_GE(count, 16u);
   MeshSelection selection;
   selection.vertices.assign(mesh.vertices.size(), 0);
   for (std::size_t k :
@@ -222,12 +223,59 @@ TEST(PartialFill, SaysWhyThereIsNoStrip) {
 
 TEST(PartialFill, TooManyStretchesAreRefused) {
   const test::CutOut part = sheet();
-  const auto pairs = [](double along) { return static_cast<int>(along) % 3 != 2; };  // edges 0-1, 3-4, ...
-  const Filled filled = fill(part, [&](const Vector3& p) {
-    return (p.y() == 0 || p.y() == rows) && p.x() >= 0 && p.x() <= columns && pairs(p.x());
+  const std::vector<BoundaryLoop> loops = test::loops_of(part.mesh);
+  const auto rims = inner_rims(part.mesh, loops);
+  std::vector<RimStretch> stretches;
+  for (std::size_t k = 0; k < 8; ++k) stretches.push_back({rims.front(), 7 * k, 1});
+  const Strip strip = cut_strip(part.mesh, loops, rims, stretches, part.patch);
+  EXPECT_NE(strip.reason.find("select at most 7"), std::string::npos) << strip.reason;
+  EXPECT_TRUE(strip.patch.empty());
+}
+
+// As a rectangle takes them where the rim is ragged.
+TEST(PartialFill, ShortInterruptionsAndShortStretchesDoNotCount) {
+  const test::CutOut part = sheet();
+  const std::vector<BoundaryLoop> loops = test::loops_of(part.mesh);
+  const BoundaryLoop& rim = loops[inner_rims(part.mesh, loops).front()];
+  const auto stretches = [&](const std::vector<std::pair<std::size_t, std::size_t>>& selected) {
+    MeshSelection selection;
+    selection.vertices.assign(part.mesh.vertices.size(), 0);
+    for (const auto& [first, last] : selected)
+      for (std::size_t k = first; k <= last; ++k)
+        selection.vertices[rim.vertices[k % rim.vertices.size()]] = 1;
+    std::vector<std::pair<std::size_t, std::size_t>> found;
+    for (const RimStretch& s : selected_stretches(part.mesh, loops, selection))
+      found.emplace_back(s.first, s.edges);
+    return found;
+  };
+  using Found = std::vector<std::pair<std::size_t, std::size_t>>;
+  EXPECT_EQ(stretches({{5, 9}, {14, 20}}), (Found{{5, 15}}));
+  EXPECT_EQ(stretches({{5, 9}, {14, 18}}), (Found{{5, 4}, {14, 4}}));
+  EXPECT_EQ(stretches({{5, 9}, {20, 22}}), (Found{{5, 4}}));
+  EXPECT_EQ(stretches({{20, 22}}), (Found{{20, 2}}));
+  EXPECT_EQ(stretches({{50, 54}, {58, 64}}), (Found{{50, 14}}));  // over the start of 56
+  EXPECT_EQ(stretches({{0, 50}}), (Found{{0, 56}}));
+}
+
+// Two bays at opposite ends of the hole: a strip between them would be far longer than both.
+TEST(PartialFill, StretchesThatAreFarApartAreBays) {
+  const TriangleMesh grid = test::flat_grid(66, 10);
+  const test::CutOut part = test::cut_out(grid, [&](Index face) {
+    const Vector3 at = middle(grid, face);
+    return at.x() > 3 && at.x() < 63 && at.y() > 3 && at.y() < 7;
   });
-  EXPECT_NE(filled.strip.reason.find("select at most 7"), std::string::npos) << filled.strip.reason;
-  EXPECT_TRUE(filled.strip.patch.empty());
+  const std::vector<BoundaryLoop> loops = test::loops_of(part.mesh);
+  std::vector<std::size_t> rims;
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    if (loops[i].vertices.size() == 128) rims.push_back(i);
+  ASSERT_EQ(rims.size(), 1u);
+  MeshSelection selection;
+  for (const Vector3& p : part.mesh.vertices)
+    selection.vertices.push_back(p.y() >= 3 && p.y() <= 7 && (p.x() <= 5 || p.x() >= 61));
+  const Strip strip =
+      cut_strip(part.mesh, loops, rims, selected_stretches(part.mesh, loops, selection), part.patch);
+  EXPECT_EQ(strip.edges, 2u * (4 + 2 + 2));
+  EXPECT_LT(strip.patch.triangles.size(), 50u);
 }
 
 TEST(PartialFill, HolesAtAStretchAndNearItAreTargeted) {
