@@ -32,9 +32,9 @@ constexpr std::size_t most_stretches = 7;
 /// The end of each is joined to the start of another one (of itself when it is the only one, or the others
 /// are eight times as far) by a path along edges of the patch that touches no rim, ends and starts paired so
 /// that the paths are short together. A path goes beside the geodesic between its ends. Where the patch is so
-/// narrow that it would go far round, its ends are moved along the rims by up to sixteen edges. What is on one
-/// side of these paths with the stretches is the strip; rims that lie in it whole are closed too. There is
-/// none when the paths do not separate it from an unselected edge of a rim with a stretch. Source: Centin,
+/// narrow that it would go far round, its ends are moved along the rims by up to sixteen edges. What is on
+/// one side of these paths with the stretches is the strip; rims that lie in it whole are closed too. There
+/// is none when the paths do not separate it from an unselected edge of a rim with a stretch. Source: Centin,
 /// Pezzotti and Signoroni, section 3.4. Cost: O(n log n) in the patch for each stretch. Throws Cancelled.
 Strip cut_strip(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops,
                 const std::vector<std::size_t>& rims, const std::vector<RimStretch>& stretches,
