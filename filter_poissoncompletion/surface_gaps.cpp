@@ -105,14 +105,13 @@ std::vector<GapCloser::Loop> GapCloser::loops() const {
 }
 
 void GapCloser::find_mesh_edges(const std::vector<Loop>& loops) {
-  std::unordered_set<Index> concerned;
+  std::vector<char> concerned(mesh_.vertices.size(), 0);
   for (const Loop& loop : loops)
     for (Index v : loop)
-      if (surface_.vertices[v].input != none) concerned.insert(surface_.vertices[v].input);
+      if (surface_.vertices[v].input != none) concerned[surface_.vertices[v].input] = 1;
   for (const Triangle& t : mesh_.triangles)
     for (int k = 0; k < 3; ++k)
-      if (concerned.count(t[k]) && concerned.count(t[(k + 1) % 3]))
-        mesh_edges_.insert(pair_key(t[k], t[(k + 1) % 3]));
+      if (concerned[t[k]] && concerned[t[(k + 1) % 3]]) mesh_edges_.insert(pair_key(t[k], t[(k + 1) % 3]));
 }
 
 bool GapCloser::has_edge(Index a, Index b) const {

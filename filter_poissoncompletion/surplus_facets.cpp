@@ -24,6 +24,8 @@ class Dropper {
  public:
   Dropper(SeparatingSurface& surface, const TriangleMesh& mesh, const MeshTopology& topology)
       : surface_(surface), mesh_(mesh), gone_(surface.triangles.size(), 0) {
+    boundary_.reserve(topology.boundary_half_edges.size());
+    facets_.reserve(2 * surface.triangles.size());
     for (Index h : topology.boundary_half_edges) boundary_.emplace(pair_key(end(h, 0), end(h, 1)), h);
     for (Index t = 0; t < surface.triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) facets_[side(t, k)].push_back(t);
