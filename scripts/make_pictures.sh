@@ -71,7 +71,7 @@ picture "$cache/data/mech-holes-shark.off" "$images/poisson-shark" -f "Close Hol
 # The paper's figures 10, 1 and 12, and what it names as future work.
 poisson fist fist --from=0.2,-1,0.25 --up=0,0,1 --width=0.6 --at=0,0,0.1
 poisson fist fist-below --from=0.3,-1,-0.9 --up=0,0,1 --width=0.45 --at=0,0,0.1
-poisson slices slices --from=-0.3,0.3,1 --width=0.9
+poisson slices slices --from=-0.3,0.3,1 --width=1.05
 poisson assembled assembled --from=-0.1,0.1,1 --width=0.9 \
   --with "$work/assembled-tube.off" -p GuideLayer=assembled-tube.off
 poisson head head --from=-0.5,0.3,1 --width=0.9
@@ -79,7 +79,7 @@ poisson head head-close --from=-0.5,0.3,1 --width=0.35 --at=-0.38,0.05,0.12 --ed
 poisson horseshoe horseshoe --from=0.3,-0.6,1 --width=0.85
 poisson horseshoe horseshoe-guided --from=0.3,-0.6,1 --width=0.85 \
   --with "$work/horseshoe-points.ply" -p GuideLayer=horseshoe-points.ply
-rm "$images/poisson-horseshoe-guided-before.png"
+rm "$images"/poisson-horseshoe{,-guided}-before.png
 # Those are the same as with atomic volumes.
 rm "$images"/poisson-{gap,island,torus,guided}-before.png
 
