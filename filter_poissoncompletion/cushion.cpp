@@ -26,10 +26,13 @@ std::optional<Cushion::Nearest> Cushion::nearest(const Vector3& point) const {
   double best = largest_ * largest_;
   std::optional<Nearest> found;
   const auto offer = [&](Index triangle) {
-    if (squared_distance(mesh_.triangle_box(triangle), point) > best) return true;
     const Triangle& t = mesh.triangles[triangle];
-    const Vector3 at =
-        closest_point(point, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]).position;
+    const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    // No finite box is asked for: what comes of other coordinates is not below the best.
+    const Vector3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const Vector3 off = (low - point).cwiseMax(point - high).cwiseMax(0.0);
+    if (off.squaredNorm() > best) return true;
+    const Vector3 at = closest_point(point, a, b, c).position;
     const double squared = (at - point).squaredNorm();
     if (!(squared < best) && !(squared == best && found && triangle < found->triangle)) return true;
     best = squared;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <unordered_set>
+#include <utility>
 
 namespace meshcomplete {
 namespace {
@@ -13,6 +13,11 @@ namespace {
 // Cells of the sampling's grid along the longest side of a component: some samples of every one, however
 // small.
 constexpr double least_cells = 4;
+
+// Samples that are wanted at most: where the holes are small, more of a large mesh are of no use to them.
+constexpr double most_samples = 20000;
+
+constexpr Index none = 0xffffffffu;
 
 class PointChooser {
  public:
@@ -99,40 +104,59 @@ class PointChooser {
 
   // The first vertex in every cell of a grid, for each component by itself.
   void take_samples(const MeshTopology& topology, double share) {
-    std::vector<Index> parent(mesh_.triangles.size());
-    std::iota(parent.begin(), parent.end(), Index(0));
-    const auto root = [&](Index i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    std::vector<Eigen::AlignedBox3d> box(mesh_.triangles.size());
+    const auto [component, boxes] = components(topology);
     double area = 0;
-    for (Index h = 0; h < topology.opposite.size(); ++h)
-      if (topology.opposite[h] < h) parent[root(h / 3)] = root(topology.opposite[h] / 3);
-    for (Index t = 0; t < mesh_.triangles.size(); ++t) {
-      Eigen::AlignedBox3d& whole = box[root(t)];
-      Vector3 p[3];
-      for (int k = 0; k < 3; ++k) whole.extend(p[k] = mesh_.vertices[mesh_.triangles[t][k]]);
-      area += 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
+    for (const Triangle& t : mesh_.triangles) {
+      const Vector3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+      area += 0.5 * (b - a).cross(c - a).norm();
     }
-    const double wanted = share * static_cast<double>(mesh_.vertices.size());
+    const double wanted = std::min(share * static_cast<double>(mesh_.vertices.size()), most_samples);
     const double spacing = std::sqrt(area / std::max(wanted, 1.0));
+    std::vector<Index> tried(mesh_.vertices.size(), none);  // with which component last
     std::unordered_set<std::uint64_t> taken;
     for (Index t = 0; t < mesh_.triangles.size(); ++t) {
-      const Index component = root(t);
-      const double cell = std::min(spacing, box[component].sizes().maxCoeff() / least_cells);
+      const Index own = component[t];
+      const double cell = std::min(spacing, boxes[own].sizes().maxCoeff() / least_cells);
       if (!(cell > 0)) continue;
       for (Index v : mesh_.triangles[t]) {
-        if (chosen_[v]) continue;
-        std::uint64_t key = component;
+        if (chosen_[v] || tried[v] == own) continue;
+        tried[v] = own;
+        std::uint64_t key = (own + std::uint64_t{1}) * 0xbf58476d1ce4e5b9u;
         for (int k = 0; k < 3; ++k) {
-          const double step = std::floor((mesh_.vertices[v][k] - box[component].min()[k]) / cell);
+          const double step = std::floor((mesh_.vertices[v][k] - boxes[own].min()[k]) / cell);
           key = (key ^ static_cast<std::uint64_t>(step)) * 0x9e3779b97f4a7c15u;
           key ^= key >> 29;
         }
         if (taken.insert(key).second) take(v);
       }
     }
+  }
+
+  // The component of each triangle, and the box of each component.
+  std::pair<std::vector<Index>, std::vector<Eigen::AlignedBox3d>> components(
+      const MeshTopology& topology) const {
+    std::vector<Index> component(mesh_.triangles.size(), none), open;
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (Index start = 0; start < component.size(); ++start) {
+      if (component[start] != none) continue;
+      const Index own = static_cast<Index>(boxes.size());
+      Eigen::AlignedBox3d box;
+      component[start] = own;
+      open.assign(1, start);
+      while (!open.empty()) {
+        const Index t = open.back();
+        open.pop_back();
+        for (Index v : mesh_.triangles[t]) box.extend(mesh_.vertices[v]);
+        for (Index h = 3 * t; h < 3 * t + 3; ++h) {
+          const Index other = topology.opposite[h];
+          if (other >= topology.opposite.size() || component[other / 3] != none) continue;
+          component[other / 3] = own;
+          open.push_back(other / 3);
+        }
+      }
+      boxes.push_back(box);
+    }
+    return {std::move(component), std::move(boxes)};
   }
 
   const TriangleMesh& mesh_;

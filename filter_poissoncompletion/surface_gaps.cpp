@@ -18,6 +18,7 @@ constexpr Index none = SheetVertex::none;
 // Gaps with more edges are missing surface: on real scans none of more than nine was seen.
 constexpr std::size_t most_edges = 24;
 
+constexpr int lowest = std::numeric_limits<int>::min();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class GapCloser {
@@ -33,7 +34,8 @@ class GapCloser {
   using Loop = std::vector<Index>;
 
   Index vertex_of(Index input);
-  void count(Index from, Index to) { balance_[pair_key(from, to)] += from < to ? 1 : -1; }
+  void count(Index from, Index to) { balance_.emplace_back(pair_key(from, to), from < to ? 1 : -1); }
+  void sum_up();
   void count_rims(const std::vector<Index>& rim_half_edges);
   std::vector<Loop> loops() const;
   void find_mesh_edges(const std::vector<Loop>& loops);
@@ -45,8 +47,10 @@ class GapCloser {
 
   SeparatingSurface& surface_;
   const TriangleMesh& mesh_;
-  std::unordered_map<Index, Index> vertex_of_;    // by the mesh's vertex
-  std::map<std::uint64_t, int> balance_;          // facets that walk an edge upwards, minus the others
+  std::unordered_map<Index, Index> vertex_of_;  // by the mesh's vertex
+  // Edges, ascending once they are summed up: facets that walk one upwards, minus the others.
+  std::vector<std::pair<std::uint64_t, int>> balance_;
+  std::unordered_set<std::uint64_t> new_edges_;   // of the facets that close gaps
   std::unordered_set<std::uint64_t> mesh_edges_;  // between the mesh's vertices at gaps
 };
 
@@ -74,6 +78,18 @@ void GapCloser::count_rims(const std::vector<Index>& rim_half_edges) {
     chain.push_back(vertex_of(t[(h % 3 + 1) % 3]));
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) count(chain[i], chain[i + 1]);
   }
+}
+
+// One entry for each edge, also where facets on both sides cancel out.
+void GapCloser::sum_up() {
+  std::sort(balance_.begin(), balance_.end());
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < balance_.size(); ++i)
+    if (balance_[i].first == balance_[last].first)
+      balance_[last].second += balance_[i].second;
+    else
+      balance_[++last] = balance_[i];
+  if (!balance_.empty()) balance_.resize(last + 1);
 }
 
 // Simple loops of the edges that lack facets, in the sense in which these have to walk them.
@@ -105,19 +121,20 @@ std::vector<GapCloser::Loop> GapCloser::loops() const {
 }
 
 void GapCloser::find_mesh_edges(const std::vector<Loop>& loops) {
-  std::unordered_set<Index> concerned;
+  std::vector<char> concerned(mesh_.vertices.size(), 0);
   for (const Loop& loop : loops)
     for (Index v : loop)
-      if (surface_.vertices[v].input != none) concerned.insert(surface_.vertices[v].input);
+      if (surface_.vertices[v].input != none) concerned[surface_.vertices[v].input] = 1;
   for (const Triangle& t : mesh_.triangles)
     for (int k = 0; k < 3; ++k)
-      if (concerned.count(t[k]) && concerned.count(t[(k + 1) % 3]))
-        mesh_edges_.insert(pair_key(t[k], t[(k + 1) % 3]));
+      if (concerned[t[k]] && concerned[t[(k + 1) % 3]]) mesh_edges_.insert(pair_key(t[k], t[(k + 1) % 3]));
 }
 
 bool GapCloser::has_edge(Index a, Index b) const {
   const Index p = surface_.vertices[a].input, q = surface_.vertices[b].input;
-  return balance_.count(pair_key(a, b)) || (p != none && q != none && mesh_edges_.count(pair_key(p, q)));
+  const auto at = std::lower_bound(balance_.begin(), balance_.end(), std::make_pair(pair_key(a, b), lowest));
+  return (at != balance_.end() && at->first == pair_key(a, b)) || new_edges_.count(pair_key(a, b)) ||
+         (p != none && q != none && mesh_edges_.count(pair_key(p, q)));
 }
 
 // Dynamic programming over the parts of the loop from corner i to corner j.
@@ -152,7 +169,7 @@ bool GapCloser::close(const Loop& loop) {
     const std::size_t k = apex[i * n + j];
     surface_.triangles.push_back({loop[i], loop[k], loop[j]});
     for (const auto& [a, b] : {std::make_pair(i, k), std::make_pair(k, j), std::make_pair(i, j)})
-      balance_[pair_key(loop[a], loop[b])] += 0;  // an edge now
+      new_edges_.insert(pair_key(loop[a], loop[b]));
     open.emplace_back(i, k);
     open.emplace_back(k, j);
   }
@@ -163,6 +180,7 @@ SurfaceGapFigures GapCloser::run(const std::vector<Index>& rim_half_edges) {
   for (const Triangle& t : surface_.triangles)
     for (int k = 0; k < 3; ++k) count(t[k], t[(k + 1) % 3]);
   count_rims(rim_half_edges);
+  sum_up();
   SurfaceGapFigures figures;
   const std::vector<Loop> gaps = loops();
   if (gaps.empty()) return figures;

@@ -24,9 +24,9 @@ class Dropper {
  public:
   Dropper(SeparatingSurface& surface, const TriangleMesh& mesh, const MeshTopology& topology)
       : surface_(surface), mesh_(mesh), gone_(surface.triangles.size(), 0) {
+    boundary_.reserve(topology.boundary_half_edges.size());
     for (Index h : topology.boundary_half_edges) boundary_.emplace(pair_key(end(h, 0), end(h, 1)), h);
-    for (Index t = 0; t < surface.triangles.size(); ++t)
-      for (int k = 0; k < 3; ++k) facets_[side(t, k)].push_back(t);
+    list_facets();
   }
 
   std::size_t run();
@@ -41,6 +41,7 @@ class Dropper {
   std::uint64_t side(Index t, int k) const {
     return pair_key(surface_.triangles[t][k], surface_.triangles[t][(k + 1) % 3]);
   }
+  void list_facets();
   Index rim_at(Index a, Index b) const;
   bool is_wrong(Index t, int k) const;
   Entry entry(Index t) const;
@@ -49,9 +50,29 @@ class Dropper {
   SeparatingSurface& surface_;
   const TriangleMesh& mesh_;
   std::vector<char> gone_;
-  std::unordered_map<std::uint64_t, Index> boundary_;             // half-edges of the mesh
-  std::unordered_map<std::uint64_t, std::vector<Index>> facets_;  // that are left, by side
+  std::unordered_map<std::uint64_t, Index> boundary_;  // half-edges of the mesh
+  std::vector<Index> edge_;                            // of each side of each facet
+  std::vector<Index> first_;                           // of each edge, in `facets_`
+  std::vector<Index> left_;                            // how many facets an edge has left
+  std::vector<Index> facets_;                          // by edge, those that are left first
 };
+
+// By sides sorted along their edges: much faster than a table of lists.
+void Dropper::list_facets() {
+  std::vector<std::pair<std::uint64_t, Index>> sides(3 * surface_.triangles.size());
+  for (Index i = 0; i < sides.size(); ++i) sides[i] = {side(i / 3, static_cast<int>(i % 3)), i};
+  std::sort(sides.begin(), sides.end());
+  edge_.resize(sides.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (i == 0 || sides[i].first != sides[i - 1].first) {
+      first_.push_back(static_cast<Index>(i));
+      left_.push_back(0);
+    }
+    edge_[sides[i].second] = static_cast<Index>(left_.size() - 1);
+    ++left_.back();
+    facets_.push_back(sides[i].second / 3);
+  }
+}
 
 // The boundary half-edge of the mesh on which a side lies.
 Index Dropper::rim_at(Index a, Index b) const {
@@ -70,7 +91,7 @@ Index Dropper::rim_at(Index a, Index b) const {
 
 bool Dropper::is_wrong(Index t, int k) const {
   const Index rim = rim_at(surface_.triangles[t][k], surface_.triangles[t][(k + 1) % 3]);
-  return facets_.at(side(t, k)).size() % 2 != (rim == none ? 0 : 1);
+  return left_[edge_[3 * t + static_cast<Index>(k)]] % 2 != (rim == none ? 0 : 1);
 }
 
 double Dropper::angle_to_mesh(Index t, int k, Index half_edge) const {
@@ -111,9 +132,12 @@ std::size_t Dropper::run() {
     ++dropped;
     std::vector<Index> touched;
     for (int k = 0; k < 3; ++k) {
-      std::vector<Index>& there = facets_.at(side(worst, k));
-      there.erase(std::find(there.begin(), there.end(), worst));
-      touched.insert(touched.end(), there.begin(), there.end());
+      const Index edge = edge_[3 * worst + static_cast<Index>(k)];
+      const auto there = facets_.begin() + first_[edge], end = there + left_[edge];
+      const auto place = std::find(there, end, worst);
+      std::copy(place + 1, end, place);
+      --left_[edge];
+      touched.insert(touched.end(), there, end - 1);
     }
     for (Index t : touched) {
       queue.erase(entry_of[t]);

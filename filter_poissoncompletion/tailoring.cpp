@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
+#include <numeric>
 
 #include "common/core/graph_cut.h"
-#include "common/core/pair_key.h"
 #include "filter_poissoncompletion/surplus_facets.h"
 
 namespace meshcomplete {
@@ -27,7 +25,7 @@ constexpr double total_price = 1e12;
 // on the surface alone. Patches have corners at the last three.
 enum class Place : char { elsewhere, mesh, mesh_edge, rim, rim_edge, fresh };
 
-enum Side : char { free = 0, inside = 1, outside = 2, both = 3 };
+enum Side : char { free = 0, inside = 1, outside = 2, both = 3, unknown = 4 };
 
 class Tailor {
  public:
@@ -46,23 +44,24 @@ class Tailor {
   bool is_part(const Triangle& facet, Index face) const;
   void match(Index cell, int k, Index face);
   void flood_stars();
-  bool flood(Index vertex, const std::vector<Index>& star);
+  bool flood(Index vertex, const Index* star, const Index* star_end);
   void cut(const Progress& progress);
   double area(Index cell, int k) const;
-  bool is_input(Index cell, int k) const {
-    return matched_.count(4 * std::uint64_t{cell} + static_cast<std::uint64_t>(k)) != 0;
-  }
+  bool is_input(Index cell, int k) const { return input_facets_[cell] >> k & 1; }
   SeparatingSurface extract() const;
 
   const TailoringInput& in_;
   const DelaunayComplex& complex_;
   TailoringFigures& figures_;
   std::vector<Place> place_;
-  std::vector<Index> input_of_;                                  // the mesh's vertex
-  std::unordered_map<std::uint64_t, std::vector<Index>> faces_;  // ring faces by two of their corners
-  std::unordered_map<std::uint64_t, Index> matched_;  // facets (4 * cell + k) that are parts of ring faces
-  std::vector<char> side_;                            // that the ring has a cell on
-  std::vector<char> label_;                           // inside
+  std::vector<Index> rank_;         // of each vertex of the mesh that is in the complex
+  std::vector<Index> first_face_;   // of each rank, in `faces_`
+  std::vector<Index> faces_;        // ring faces at each vertex, ascending
+  std::vector<char> input_facets_;  // of each cell: bit k, that facet k is part of a ring face
+  std::vector<char> side_;          // that the ring has a cell on
+  std::vector<char> found_;         // of each cell: its side in the star that is flooded, or `unknown`
+  std::vector<Index> open_;         // the cells of that star whose side was found
+  std::vector<char> label_;         // inside
 };
 
 void Tailor::place_vertices() {
@@ -86,14 +85,23 @@ void Tailor::place_vertices() {
 
 // Those whose corners are all there.
 void Tailor::index_faces() {
-  std::vector<char> there(in_.mesh.vertices.size(), 0);
+  rank_.assign(in_.mesh.vertices.size(), none);
+  Index ranks = 0;
   for (Index v : complex_.mesh_vertex)
-    if (v != none) there[v] = 1;
+    if (v != none && rank_[v] == none) rank_[v] = ranks++;
+  std::vector<Index> ring;
+  first_face_.assign(ranks + 1, 0);
   for (Index face = 0; face < in_.mesh.triangles.size(); ++face) {
     const Triangle& t = in_.mesh.triangles[face];
-    if (!there[t[0]] || !there[t[1]] || !there[t[2]]) continue;
-    for (int k = 0; k < 3; ++k) faces_[pair_key(t[k], t[(k + 1) % 3])].push_back(face);
+    if (rank_[t[0]] == none || rank_[t[1]] == none || rank_[t[2]] == none) continue;
+    ring.push_back(face);
+    for (Index v : t) ++first_face_[rank_[v] + 1];
   }
+  std::partial_sum(first_face_.begin(), first_face_.end(), first_face_.begin());
+  faces_.resize(first_face_.back());
+  std::vector<Index> filled(first_face_.begin(), first_face_.end() - 1);
+  for (Index face : ring)
+    for (Index v : in_.mesh.triangles[face]) faces_[filled[rank_[v]]++] = face;
 }
 
 // The face of the mesh of which a facet is a part.
@@ -106,11 +114,11 @@ Index Tailor::face_at(const Triangle& facet) const {
       return none;
   }
   if (divided) return divided_face_at(facet);
-  const auto found = faces_.find(pair_key(complex_.mesh_vertex[facet[0]], complex_.mesh_vertex[facet[1]]));
-  if (found == faces_.end()) return none;
-  for (Index face : found->second) {
-    const Triangle& t = in_.mesh.triangles[face];
-    if (std::count(t.begin(), t.end(), complex_.mesh_vertex[facet[2]])) return face;
+  const Index a = complex_.mesh_vertex[facet[0]], b = complex_.mesh_vertex[facet[1]],
+              c = complex_.mesh_vertex[facet[2]];
+  for (Index i = first_face_[rank_[a]]; i < first_face_[rank_[a] + 1]; ++i) {
+    const Triangle& t = in_.mesh.triangles[faces_[i]];
+    if ((t[0] == b || t[1] == b || t[2] == b) && (t[0] == c || t[1] == c || t[2] == c)) return faces_[i];
   }
   return none;
 }
@@ -154,11 +162,12 @@ void Tailor::match(Index cell, int k, Index face) {
   };
   const bool before = normal(complex_.vertices, facet).dot(normal(in_.mesh.vertices, t)) > 0;
   side_[cell] |= before ? outside : inside;
-  matched_.emplace(4 * std::uint64_t{cell} + static_cast<std::uint64_t>(k), face);
+  input_facets_[cell] |= static_cast<char>(1 << k);
 }
 
 void Tailor::match_facets() {
   side_.assign(complex_.cells.size(), free);
+  input_facets_.assign(complex_.cells.size(), 0);
   std::vector<char> met(in_.mesh.triangles.size(), 0);
   for (Index cell = 0; cell < complex_.cells.size(); ++cell)
     for (int k = 0; k < 4; ++k) {
@@ -182,37 +191,40 @@ void Tailor::flood_stars() {
   for (Index c = 0; c < complex_.cells.size(); ++c)
     for (Index v : complex_.cells[c])
       if (counts(v)) cells[filled[v]++] = c;
-  for (Index v = 0; v < complex_.vertices.size(); ++v)
-    if (first[v + 1] > first[v])
-      flood(v, std::vector<Index>(cells.begin() + first[v], cells.begin() + first[v + 1]));
+  found_.assign(complex_.cells.size(), unknown);
+  for (Index v = 0; v < complex_.vertices.size(); ++v) {
+    if (first[v + 1] == first[v]) continue;
+    if (flood(v, cells.data() + first[v], cells.data() + first[v + 1]))
+      for (Index cell : open_) side_[cell] |= found_[cell];
+    for (Index cell : open_) found_[cell] = unknown;
+  }
 }
 
 // Only when it leads to no contradiction: there is one when faces are missing.
-bool Tailor::flood(Index vertex, const std::vector<Index>& star) {
-  std::unordered_map<Index, char> found;
-  std::vector<Index> open;
-  for (Index cell : star)
+bool Tailor::flood(Index vertex, const Index* star, const Index* star_end) {
+  open_.clear();
+  for (; star != star_end; ++star)
     for (int k = 0; k < 4; ++k)
-      if (complex_.cells[cell][k] != vertex && is_input(cell, k)) {
+      if (complex_.cells[*star][k] != vertex && is_input(*star, k) && found_[*star] == unknown) {
         // What other faces say of the cell does not matter here.
-        found[cell] = side_[cell];
-        open.push_back(cell);
+        found_[*star] = side_[*star];
+        open_.push_back(*star);
       }
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    const Index cell = open[i];
-    const char side = found[cell];
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    const Index cell = open_[i];
+    const char side = found_[cell];
     if (side == both) return false;
     for (int k = 0; k < 4; ++k) {
       const Index next = complex_.neighbours[cell][k];
       if (complex_.cells[cell][k] == vertex || next == none || is_input(cell, k)) continue;
-      const auto [at, fresh] = found.emplace(next, side);
-      if (fresh)
-        open.push_back(next);
-      else if (at->second != side)
+      if (found_[next] == unknown) {
+        found_[next] = side;
+        open_.push_back(next);
+      } else if (found_[next] != side) {
         return false;
+      }
     }
   }
-  for (const auto& [cell, side] : found) side_[cell] |= side;
   return true;
 }
 

@@ -16,10 +16,14 @@ images=$top/docs/images
 mkdir -p "$images"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$top/scripts/fetch_demo.sh" elephant-with-holes.off mech-holes-shark.off armadillo.off
+"$top/scripts/fetch_demo.sh" elephant-with-holes.off mech-holes-shark.off armadillo.off hand.off bunny00.off \
+  lion-head.off
 "$top/scripts/make_spiral_hole.py" "$work/spiral.off"
 for shape in pierced-sphere outer-half-torus inside-the-ring island guide-tube unlike-halves; do
   "$top/scripts/make_atomic_shapes.py" "$shape" "$work/$shape.off"
+done
+for shape in fist slices assembled head horseshoe; do
+  "$top/scripts/make_paper_cases.py" "$shape" "$work"
 done
 "$top/scripts/make_atomic_shapes.py" gap "$work/gap.off" "$cache/data/armadillo.off" y -28 -22
 
@@ -67,6 +71,18 @@ picture "$work/gap.off" "$images/poisson-strip" -f "Conditional Vertex Selection
   -f "Close Holes: Poisson-driven" -p PartialFill=true --size=480,360 --from=0.35,0.12,-1 --width=0.25 --at=24,-24,12
 picture "$cache/data/mech-holes-shark.off" "$images/poisson-shark" -f "Close Holes: Poisson-driven" --size=480,360 \
   --from=-1,-0.3,0.3 --width=1
+# The paper's figures 10, 1 and 12, and what it names as future work.
+poisson fist fist --from=0.2,-1,0.25 --up=0,0,1 --width=0.6 --at=0,0,0.1
+poisson fist fist-below --from=0.3,-1,-0.9 --up=0,0,1 --width=0.45 --at=0,0,0.1
+poisson slices slices --from=-0.3,0.3,1 --width=1.05
+poisson assembled assembled --from=-0.1,0.1,1 --width=0.9 \
+  --with "$work/assembled-tube.off" -p GuideLayer=assembled-tube.off
+poisson head head --from=-0.5,0.3,1 --width=0.9
+poisson head head-close --from=-0.5,0.3,1 --width=0.35 --at=-0.38,0.05,0.12 --edges
+poisson horseshoe horseshoe --from=0.3,-0.6,1 --width=0.85
+poisson horseshoe horseshoe-guided --from=0.3,-0.6,1 --width=0.85 \
+  --with "$work/horseshoe-points.ply" -p GuideLayer=horseshoe-points.ply
+rm "$images"/poisson-horseshoe{,-guided}-before.png
 # Those are the same as with atomic volumes.
 rm "$images"/poisson-{gap,island,torus,guided}-before.png
 

@@ -119,6 +119,13 @@ Ranges rim_ranges(const std::vector<Index>& piece, Eigen::Index new_vertices, Ei
   return ranges;
 }
 
+/// Whether the rim of every piece has one value in every column, so that there is nothing to interpolate.
+bool one_value_each(const Ranges& ranges, const std::vector<Index>& piece) {
+  return std::all_of(piece.begin(), piece.end(), [&](Index p) {
+    return (ranges.low.row(p).array() == ranges.high.row(p).array()).all();
+  });
+}
+
 }  // namespace
 
 Eigen::MatrixXd interpolate_attributes(const TriangleMesh& mesh, const Patch& patch, Eigen::Index columns,
@@ -140,6 +147,12 @@ Eigen::MatrixXd interpolate_attributes(const TriangleMesh& mesh, const Patch& pa
     if (!has_rim[piece[static_cast<std::size_t>(i)]])
       throw CompletionError("interpolating attributes",
                             "A part of the patch is not connected to the rim of a hole.");
+
+  if (one_value_each(ranges, piece)) {
+    for (Eigen::Index v = 0; v < free; ++v)
+      values.row(v) = ranges.low.row(piece[static_cast<std::size_t>(v)]);
+    return values;
+  }
 
   const Eigen::SparseMatrix<double> weights = edge_weights(local);
   std::vector<Eigen::Triplet<double>> entries;
