@@ -124,13 +124,12 @@ void solver(const std::vector<KnownSurface>& truths, const std::filesystem::path
   std::printf(
       "\n| surface | depth | program | faces | from the samples | from the truth | at most | to the truth "
       "| s | processor s | MB |\n|---|---:|---|---:|---:|---:|---:|---:|---:|---:|---:|\n");
-  for (const KnownSurface& truth : truths) {
-    run.set_points(truth.samples);
-    for (int depth : {7, 8, 9}) {
+  for (int depth : {7, 8, 9})
+    for (const KnownSurface& truth : truths) {
+      run.set_points(truth.samples);
       solver_row(truth, depth, "MeshLab", run.meshlab(depth));
       solver_row(truth, depth, "ours", run.ours("cubes", {std::to_string(depth)}));
     }
-  }
   if (const auto alone = run.meshlab_alone())
     std::printf(
         "\nMeshLab only to start, read and write the last of these point sets: %.1f s, %.1f s of processor "
@@ -140,7 +139,6 @@ void solver(const std::vector<KnownSurface>& truths, const std::filesystem::path
 
 void convergence(const std::vector<KnownSurface>& truths) {
   residual_table(truths.front());
-  if (truths.size() > 2) residual_table(truths[2]);
   std::printf(
       "\n| surface | tolerance | iterations, all levels | finest level | from the samples | from the truth "
       "| s | processor s |\n|---|---:|---:|---:|---:|---:|---:|---:|\n");
@@ -148,7 +146,7 @@ void convergence(const std::vector<KnownSurface>& truths) {
 }
 
 void oracle(const std::vector<KnownSurface>& truths) {
-  const KnownSurface& truth = truths.back();
+  const KnownSurface& truth = truths.front();
   PoissonOracle oracle = oracle_of(truth.samples, usual_depth);
   const std::vector<Vector3> all = anywhere(oracle.field, 400000), near = along_surface(truth, oracle.field);
   std::printf(
