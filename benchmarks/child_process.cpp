@@ -28,6 +28,7 @@ double seconds_of(const timeval& time) {
   dup2(output, STDOUT_FILENO);
   dup2(nothing, STDERR_FILENO);
   setenv("LC_ALL", "C", 1);
+  setenv("OMP_WAIT_POLICY", "passive", 1);         // threads that wait use no processor time
   alarm(static_cast<unsigned>(std::ceil(limit)));  // kept by the program that takes over
   execvp(words[0], words.data());
   _exit(127);

@@ -14,7 +14,8 @@ struct ProcessUse {
   std::string output;    ///< what it wrote to standard output
 };
 
-/// Runs a command, with what it needs of `PATH`; what it writes to standard error is dropped. Nothing when it
+/// Runs a command, with what it needs of `PATH`; what it writes to standard error is dropped; OpenMP's
+/// threads wait without using a processor. Nothing when it
 /// crashed or took longer than `limit` seconds.
 std::optional<ProcessUse> run_process(const std::vector<std::string>& command, double limit);
 
