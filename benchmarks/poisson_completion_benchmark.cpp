@@ -39,7 +39,7 @@ struct Punched {
 
 Punched winding(const std::string& file) {
   Punched punched{file_name(file) + ", one winding hole", read_mesh(file), {}};
-  const auto cut = cut_winding_hole(punched.truth, 200, Rim::any, 1, {}, 3);
+  const auto cut = cut_winding_hole(punched.truth, 200, benchmarks::Rim::any, 1, {}, 3);
   if (!cut) throw std::runtime_error(file + " has no room for the hole");
   punched.mesh = cut->mesh;
   return punched;

@@ -145,9 +145,7 @@ class Refiner {
   bool refine_non_manifold_places();
   void collect_cells();
   bool inside(const CellHandle& cell) const { return cell->info().value < 0; }
-  std::size_t inserted() const {
-    return complex_.vertices.size() - complex_.initial_points - DelaunayComplex::far_corners;
-  }
+  std::size_t inserted() const { return complex_.vertices.size() - complex_.first_inserted(); }
 
   const ImplicitFunction& function_;
   const RefinementOptions& options_;

@@ -53,9 +53,10 @@ FilterDeclaration remeshing_filter() {
       switch_parameter("VisibleLayers", "Visible layers too",
                        "The surface goes through all visible layers, not the current one only.", false),
       switch_parameter("Adaptive", "Adaptive", "Shorter edges where the surface is more curved.", true),
-      length_parameter("EdgeLength", "Edge length",
-                       "Of the edges, at most. 0: 8 of the smallest cubes, 2 when not adaptive. A percentage "
-                       "is of the bounding box's diagonal."),
+      length_parameter(
+          "EdgeLength", "Edge length",
+          "Of the edges, at most. 0: 8 of the smallest cubes, 1.6 when not adaptive. A percentage "
+          "is of the bounding box's diagonal."),
       length_parameter("Distance", "Distance",
                        "How far faces may be from the surface when they adapt to it. 0: as little as Share "
                        "allows. A percentage is of the bounding box's diagonal."),

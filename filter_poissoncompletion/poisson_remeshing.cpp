@@ -20,7 +20,7 @@ constexpr int usual_depth = 8;
 
 // In the octree's finest cubes: edges of facets that all have one size, edges of flat facets, how near to the
 // surface adaptive ones need not be, and how exactly its first points are on it.
-constexpr double uniform_edge = 2, longest_edge = 8, least_distance = 0.005, point_tolerance = 0.1;
+constexpr double uniform_edge = 1.6, longest_edge = 8, least_distance = 0.005, point_tolerance = 0.1;
 
 // Starts are as far apart as the longest edges: a start in each cube of so many levels above the finest that
 // holds a sample. No component that is larger is missed.

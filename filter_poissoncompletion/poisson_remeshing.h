@@ -17,7 +17,7 @@ namespace meshcomplete {
 struct PoissonRemeshingOptions {
   PoissonOracleOptions oracle;  ///< without a maximum depth the octree has 8 levels
   /// Of the edges, at most (mesh units, positive). Absent: 8 of the octree's finest cubes when they adapt to
-  /// the curvature, else 2.
+  /// the curvature, else 1.6.
   std::optional<double> edge_length;
   bool adaptive = true;  ///< shorter edges where the surface is more curved
   /// How far facets may be from the surface when edges adapt (mesh units, positive). Absent: as little as

@@ -70,9 +70,9 @@ TEST(PoissonRemeshing, EdgesOfOneLength) {
       sum += length;
       longest = std::max(longest, length);
     }
-  EXPECT_NEAR(sum / (3.0 * static_cast<double>(mesh.triangles.size())), 2 * cube(options),
-              0.4 * cube(options));
-  EXPECT_LT(longest, 3.1 * cube(options));
+  EXPECT_NEAR(sum / (3.0 * static_cast<double>(mesh.triangles.size())), 1.6 * cube(options),
+              0.3 * cube(options));
+  EXPECT_LT(longest, 2.5 * cube(options));
 }
 
 TEST(PoissonRemeshing, FittedFacesAreNearer) {
