@@ -51,10 +51,11 @@ void remeshing_row(const KnownSurface& truth, const std::string& program,
               made->use.processor_seconds, made->use.megabytes);
 }
 
-void table_head() {
+void table_head(const char* compared_with) {
   std::printf(
-      "\n| surface | program | faces | of MeshLab's | from the truth | to the truth | at most | angles "
-      "| solid | s | processor s | MB |\n|---|---|---:|---:|---:|---:|---:|---:|---|---:|---:|---:|\n");
+      "\n| surface | program | faces | %s | from the truth | to the truth | at most | angles "
+      "| solid | s | processor s | MB |\n|---|---|---:|---:|---:|---:|---:|---:|---|---:|---:|---:|\n",
+      compared_with);
 }
 
 double faces_of(const std::optional<Reconstruction>& made) {
@@ -65,7 +66,7 @@ double faces_of(const std::optional<Reconstruction>& made) {
 
 void remeshing(const std::vector<KnownSurface>& truths, const std::filesystem::path& programs) {
   ReconstructionPrograms run(programs);
-  table_head();
+  table_head("of MeshLab's");
   for (const KnownSurface& truth : truths) {
     run.set_points(truth.samples);
     const std::optional<Reconstruction> meshlab = run.meshlab(std::stoi(depth));
@@ -79,17 +80,26 @@ void remeshing(const std::vector<KnownSurface>& truths, const std::filesystem::p
 }
 
 void criteria(const std::vector<KnownSurface>& truths, const std::filesystem::path& programs) {
+  const std::vector<std::vector<std::string>> ways = {{"distance=0.1", "fitted=0"},
+                                                      {"distance=0.1"},
+                                                      {"distance=0.2", "fitted=0"},
+                                                      {"distance=0.2"},
+                                                      {"share=0.25"},
+                                                      {"share=0.3"},
+                                                      {"share=0.3", "angle=20"}};
   ReconstructionPrograms run(programs);
-  table_head();
-  for (const KnownSurface& truth : truths) {
-    run.set_points(truth.samples);
-    const double all = faces_of(run.ours("cubes", {depth}));
-    for (const char* fitted : {"fitted=0", "fitted=1"})
-      for (const char* distance : {"distance=0.05", "distance=0.1", "distance=0.2", "distance=0.4"})
-        remeshing_row(truth, std::string(distance) + ", " + fitted,
-                      run.ours("adaptive", {depth, distance, fitted}), all);
-    for (const char* angle : {"angle=0", "angle=15", "angle=20", "angle=30"})
-      remeshing_row(truth, angle, run.ours("adaptive", {depth, angle}), all);
+  const KnownSurface& truth = truths.front();
+  run.set_points(truth.samples);
+  const double all = faces_of(run.ours("cubes", {depth}));
+  table_head("of marching cubes'");
+  for (const std::vector<std::string>& way : ways) {
+    std::vector<std::string> arguments = {depth};
+    std::string name;
+    for (const std::string& word : way) {
+      arguments.push_back(word);
+      name += (name.empty() ? "" : ", ") + word;
+    }
+    remeshing_row(truth, name, run.ours("adaptive", arguments), all);
   }
 }
 
