@@ -34,11 +34,14 @@ namespace {
 
 using namespace meshcomplete;
 using benchmarks::Clock;
+using benchmarks::completed;
 using benchmarks::CutMesh;
 using benchmarks::file_name;
 using benchmarks::loops_of;
 using benchmarks::Rim;
 using benchmarks::seconds_since;
+using benchmarks::soundness;
+using benchmarks::text;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -188,28 +191,6 @@ AtomicVolumesOptions with_one_position() {
   AtomicVolumesOptions options;
   options.shifts = 1;
   return options;
-}
-
-TriangleMesh completed(TriangleMesh mesh, const Patch& patch) {
-  mesh.vertices.insert(mesh.vertices.end(), patch.vertices.begin(), patch.vertices.end());
-  mesh.triangles.insert(mesh.triangles.end(), patch.triangles.begin(), patch.triangles.end());
-  return mesh;
-}
-
-std::string text(const char* format, double value) {
-  char line[40];
-  std::snprintf(line, sizeof line, format, value);
-  return line;
-}
-
-/// "yes", or what is wrong. A mesh that is broken elsewhere is not solid whatever the patch is like.
-std::string soundness(const TriangleMesh& mesh, const Patch& patch) {
-  const MeshStatistics after = measure(completed(mesh, patch), true);
-  if (after.solid()) return "yes";
-  if (after.boundary_edges > 0) return std::to_string(after.boundary_edges) + " edges open";
-  const MeshStatistics before = measure(mesh, true);
-  const std::size_t more = *after.self_intersecting_pairs - *before.self_intersecting_pairs;
-  return more == 0 && after.non_manifold_edges == before.non_manifold_edges ? "as far as the mesh is" : "no";
 }
 
 // --- tables

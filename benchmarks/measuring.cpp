@@ -4,9 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 
+#include "common/core/mesh_statistics.h"
 #include "common/core/mesh_topology.h"
 
 namespace meshcomplete::benchmarks {
@@ -55,6 +57,27 @@ double area_of(const TriangleMesh& mesh) {
     sum += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
   }
   return sum;
+}
+
+TriangleMesh completed(TriangleMesh mesh, const Patch& patch) {
+  mesh.vertices.insert(mesh.vertices.end(), patch.vertices.begin(), patch.vertices.end());
+  mesh.triangles.insert(mesh.triangles.end(), patch.triangles.begin(), patch.triangles.end());
+  return mesh;
+}
+
+std::string soundness(const TriangleMesh& mesh, const Patch& patch) {
+  const MeshStatistics after = measure(completed(mesh, patch), true);
+  if (after.solid()) return "yes";
+  if (after.boundary_edges > 0) return std::to_string(after.boundary_edges) + " edges open";
+  const MeshStatistics before = measure(mesh, true);
+  const std::size_t more = *after.self_intersecting_pairs - *before.self_intersecting_pairs;
+  return more == 0 && after.non_manifold_edges == before.non_manifold_edges ? "as far as the mesh is" : "no";
+}
+
+std::string text(const char* format, double value) {
+  char line[40];
+  std::snprintf(line, sizeof line, format, value);
+  return line;
 }
 
 PeakMemory::PeakMemory() {

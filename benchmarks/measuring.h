@@ -9,6 +9,7 @@
 
 #include "common/core/boundary_loops.h"
 #include "common/core/mesh.h"
+#include "common/core/patch.h"
 
 namespace meshcomplete::benchmarks {
 
@@ -31,6 +32,16 @@ double median(std::vector<double> list);
 std::vector<BoundaryLoop> loops_of(const TriangleMesh& mesh);
 
 double area_of(const TriangleMesh& mesh);
+
+/// The mesh and its patch.
+TriangleMesh completed(TriangleMesh mesh, const Patch& patch);
+
+/// "yes" when the completed mesh is solid, or what is wrong. A mesh that is broken elsewhere is not solid
+/// whatever the patch is like.
+std::string soundness(const TriangleMesh& mesh, const Patch& patch);
+
+/// A number in a table, by a format of printf.
+std::string text(const char* format, double value);
 
 /// The most memory that the process has held since it was created, in megabytes (10^6 bytes), beyond what it
 /// held then.

@@ -38,9 +38,10 @@ struct DelaunayComplex {
   std::vector<Index> lost_edges;
 
   bool is_far(Index vertex) const { return vertex - initial_points < far_corners; }
+  Index first_inserted() const { return initial_points + far_corners; }
   /// Whether the vertex was inserted on the surface, and is none of the protected mesh's.
   bool is_new(Index vertex) const {
-    return vertex >= initial_points + far_corners && on_edge[vertex] == none && mesh_vertex[vertex] == none;
+    return vertex >= first_inserted() && on_edge[vertex] == none && mesh_vertex[vertex] == none;
   }
 };
 

@@ -145,6 +145,7 @@ class Refiner {
   bool refine_non_manifold_places();
   void collect_cells();
   bool inside(const CellHandle& cell) const { return cell->info().value < 0; }
+  std::size_t inserted() const { return complex_.vertices.size() - complex_.first_inserted(); }
 
   const ImplicitFunction& function_;
   const RefinementOptions& options_;
@@ -217,8 +218,7 @@ CellHandle Refiner::conflicting(const Vector3& position, const CellHandle& near,
 
 VertexHandle Refiner::insert(const Vector3& position, const CellHandle& near, const CellHandle& other,
                              bool reached, Index on_edge, Index mesh_vertex) {
-  if (complex_.vertices.size() >=
-      complex_.initial_points + DelaunayComplex::far_corners + options_.max_points)
+  if (inserted() >= options_.max_points)
     throw CompletionError(stage, "The surface would need more than " + std::to_string(options_.max_points) +
                                      " vertices. Choose a greater edge length.");
   const CellHandle start = conflicting(position, near, other);
@@ -416,6 +416,7 @@ void Refiner::refine_queue() {
     const QueuedFacet facet = queue_.top();
     queue_.pop();
     if (count % insertions_per_check == 0) progress_.check();
+    if (facet.badness < bad_shape && inserted() >= options_.points_for_distance) continue;
     if (alive_[facet.stamp] && alive_[facet.other_stamp]) refine(facet);
   }
 }

@@ -27,6 +27,8 @@ struct RefinementOptions {
   std::vector<std::pair<Index, Index>> protected_edges;
   /// Points are inserted until the surface is a closed manifold, as well. Not for use with a cushion.
   bool manifold = false;
+  /// Once so many points are inserted, facets are not refined for their distance any more.
+  std::size_t points_for_distance = static_cast<std::size_t>(-1);
   std::size_t max_points = 5000000;  ///< more inserted points throw CompletionError
 };
 

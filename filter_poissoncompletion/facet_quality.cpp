@@ -32,12 +32,12 @@ double badness(const std::array<Vector3, 3>& p, double size, const RefinementCri
   const Vector3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
   const double sine = normal.norm() * *shortest / (side[0] * side[1] * side[2]);
   const double bound = std::sin(criteria.smallest_angle * radians);
-  if (sine < bound) return 1 - 0.5 * sine / bound;
+  if (sine < bound) return 1 - (1 - bad_shape) * sine / bound;
   if (!criteria.distance) return 0;
   const std::optional<Vector3> at = surface_centre();
   if (!at) return 0;
   const double height = std::abs(normal.normalized().dot(*at - p[0]));
-  return height > *criteria.distance ? 0.5 - 0.5 * *criteria.distance / height : 0;
+  return height > *criteria.distance ? bad_shape * (1 - *criteria.distance / height) : 0;
 }
 
 }  // namespace meshcomplete

@@ -23,9 +23,13 @@ struct RefinementCriteria {
   std::optional<double> distance;
 };
 
-/// How bad a facet is: above 1 for edges that are too long, below for too small an angle, or else for too
-/// great a distance; 0 for a good one. `size` is the target edge length there; `surface_centre` gives the
-/// point of the surface on the facet's axis, and is asked only when the distance matters.
+/// Facets that are less bad are so for their distance only.
+constexpr double bad_shape = 0.5;
+
+/// How bad a facet is: above 1 for edges that are too long, from `bad_shape` on for too small an angle, or
+/// else below for too great a distance; 0 for a good one. `size` is the target edge length there;
+/// `surface_centre` gives the point of the surface on the facet's axis, and is asked only when the distance
+/// matters.
 double badness(const std::array<Vector3, 3>& facet, double size, const RefinementCriteria& criteria,
                const std::function<std::optional<Vector3>()>& surface_centre);
 

@@ -25,6 +25,7 @@ void apply_remeshing(FilterRun& run) {
   options.adaptive = values.boolean("Adaptive");
   if (values.real("EdgeLength") > 0) options.edge_length = values.real("EdgeLength");
   if (values.real("Distance") > 0) options.distance = values.real("Distance");
+  options.share = values.real("Share");
   options.smallest_angle = values.integer("Angle");
   const MeshModel& current = *run.document.mm();
   OrientedSurfaces surface;
@@ -52,13 +53,17 @@ FilterDeclaration remeshing_filter() {
       switch_parameter("VisibleLayers", "Visible layers too",
                        "The surface goes through all visible layers, not the current one only.", false),
       switch_parameter("Adaptive", "Adaptive", "Shorter edges where the surface is more curved.", true),
-      length_parameter("EdgeLength", "Edge length",
-                       "Of the edges, at most. 0: 8 of the smallest cubes, 2 when not adaptive. A percentage "
-                       "is of the bounding box's diagonal."),
       length_parameter(
-          "Distance", "Distance",
-          "How far faces may be from the surface when they adapt to it. 0: a tenth of the smallest "
-          "cubes. A percentage is of the bounding box's diagonal."),
+          "EdgeLength", "Edge length",
+          "Of the edges, at most. 0: 8 of the smallest cubes, 1.6 when not adaptive. A percentage "
+          "is of the bounding box's diagonal."),
+      length_parameter("Distance", "Distance",
+                       "How far faces may be from the surface when they adapt to it. 0: as little as Share "
+                       "allows. A percentage is of the bounding box's diagonal."),
+      positive_parameter("Share", "Share of faces",
+                         "When Distance is 0 and faces adapt to the surface: about so many there will be. Up "
+                         "to 10.",
+                         "of those that marching cubes make", 0.3),
       integer_parameter("Angle", "Smallest angle", "Faces with smaller angles are refined.", "degrees", 25, 0,
                         30)};
   const ParameterDeclaration max_depth =

@@ -17,13 +17,18 @@ namespace meshcomplete {
 struct PoissonRemeshingOptions {
   PoissonOracleOptions oracle;  ///< without a maximum depth the octree has 8 levels
   /// Of the edges, at most (mesh units, positive). Absent: 8 of the octree's finest cubes when they adapt to
-  /// the curvature, else 2.
+  /// the curvature, else 1.6.
   std::optional<double> edge_length;
   bool adaptive = true;  ///< shorter edges where the surface is more curved
-  /// How far facets may be from the surface when edges adapt (mesh units, positive). Absent: a tenth of the
-  /// octree's finest cubes.
+  /// How far facets may be from the surface when edges adapt (mesh units, positive). Absent: as little as
+  /// `share` allows.
   std::optional<double> distance;
+  /// About so many faces there may be when they adapt and no distance is given, in parts of those that
+  /// marching cubes would make of the octree (positive).
+  double share = 0.3;
   double smallest_angle = 25;  ///< that facets are refined for (degrees, 0 to 30)
+  /// The vertices move off the surface so that the faces are as near to it as can be.
+  bool fitted = true;
 };
 
 struct PoissonRemeshingResult {

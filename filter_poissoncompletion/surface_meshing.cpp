@@ -116,6 +116,8 @@ TriangleMesh mesh_surface(const ImplicitFunction& function, const std::vector<Ve
   refinement.criteria = options.criteria;
   refinement.manifold = true;
   refinement.max_points = options.max_points;
+  refinement.points_for_distance =
+      options.vertices_for_distance - std::min(options.vertices_for_distance, points.size());
   const DelaunayComplex complex = refine_delaunay(function, points, refinement, progress);
   SeparatingSurface surface;
   std::vector<Index> number(complex.vertices.size(), DelaunayComplex::none);

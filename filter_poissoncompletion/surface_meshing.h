@@ -13,6 +13,8 @@ namespace meshcomplete {
 
 struct SurfaceMeshingOptions {
   RefinementCriteria criteria;
+  /// Facets are not refined for their distance any more once there are about so many vertices.
+  std::size_t vertices_for_distance = static_cast<std::size_t>(-1);
   std::size_t max_points = 5000000;  ///< more vertices throw CompletionError
 };
 

@@ -70,13 +70,18 @@ double OctreeField::corner_value(Index cube, int corner) const {
                                          [CornerOctree::corner_place((cube - 1) % 8, corner)]];
 }
 
+std::array<double, 8> OctreeField::corner_values(Index cube) const {
+  const std::array<Index, 8> corners = octree_->corners(cube);
+  const std::vector<double>& values = values_[octree_->octree()[cube].depth - 1];
+  std::array<double, 8> result;
+  for (int c = 0; c < 8; ++c) result[c] = values[corners[c]];
+  return result;
+}
+
 double OctreeField::trilinear(const Query& query) const {
   const Octree::Cube& cube = octree_->octree()[query.leaf];
   const double side = static_cast<double>(Octree::side(cube.depth));
-  const std::array<Index, 8> corners = octree_->corners(query.leaf);
-  const std::vector<double>& values = values_[cube.depth - 1];
-  std::array<double, 8> v;
-  for (int c = 0; c < 8; ++c) v[c] = values[corners[c]];
+  std::array<double, 8> v = corner_values(query.leaf);
   for (int k = 0, count = 4; k < 3; ++k, count /= 2) {
     const double share = (query.at[k] - static_cast<double>(cube.low[k])) / side;
     for (int i = 0; i < count; ++i) v[i] = v[2 * i] + share * (v[2 * i + 1] - v[2 * i]);

@@ -38,6 +38,9 @@ class OctreeField : public ImplicitFunction {
   const Lattice& lattice() const { return lattice_; }
   /// The side of the leaf that holds a position, mesh units.
   double leaf_size(const Vector3& position) const;
+  /// At the corners of a cube of depth 1 or more; bit k of a corner's place says whether it is the upper one
+  /// along axis k.
+  std::array<double, 8> corner_values(Index cube) const;
 
  private:
   struct Query;

@@ -130,6 +130,20 @@ TEST(SurfaceMeshing, AdaptsToCurvature) {
   EXPECT_GT(round / round_area, 3 * flat / flat_area);
 }
 
+TEST(SurfaceMeshing, VerticesForTheDistanceAreLimited) {
+  const Oracle oracle = test::torus_oracle();
+  const std::vector<Vector3> points =
+      find_surface_points(oracle, test::torus(12, 8, 1, 0.35).vertices, 0.5, 1e-6);
+  SurfaceMeshingOptions options = uniform(1);
+  options.criteria.distance = 1e-4;
+  options.vertices_for_distance = 1000;
+  const TriangleMesh mesh = mesh_surface(oracle, points, options);
+  EXPECT_GE(mesh.vertices.size(), 950u);
+  EXPECT_LE(mesh.vertices.size(), 1050u);
+  for (const Triangle& t : mesh.triangles)
+    EXPECT_GT(test::smallest_angle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]), 26.9);
+}
+
 TEST(SurfaceMeshing, TooManyPoints) {
   const Oracle oracle = test::sphere_oracle();
   SurfaceMeshingOptions options = uniform(0.05);

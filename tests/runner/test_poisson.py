@@ -425,7 +425,8 @@ class Reconstruction(Case):
         self.assertIn("points that have no normals", self.refused(1, "MaxDepth=6"))
         self.write_fine()
         for parameter, code, message in (("Angle=31", 2, "0 to 30"), ("MaxDepth=3", 1, "MaxDepth must lie between MinDepth"),
-                                         ("Scale=1", 1, "Scale must lie above 1"), ("EdgeLength=-1", 2, "EdgeLength")):
+                                         ("Scale=1", 1, "Scale must lie above 1"), ("EdgeLength=-1", 2, "EdgeLength"),
+                                         ("Share=11", 1, "Share must lie above 0")):
             with self.subTest(parameter):
                 self.assertIn(message, self.refused(code, parameter))
 
