@@ -42,8 +42,7 @@ constexpr double crossing_tolerance = 1e-3;
 constexpr std::size_t most_pieces = 64;
 constexpr double least_piece = 64;
 
-// Rounds in which edges that insertions took away are restored, and in which places that are no manifold are
-// refined. Each halves the facets there, so that it takes few.
+// Rounds in which lost edges are restored, or places that are no manifold refined: each halves facets.
 constexpr int most_rounds = 30;
 
 // Insertions between two looks whether the user wants to stop: about 5 ms.
