@@ -19,6 +19,11 @@
 
 namespace meshcomplete {
 
+/// How far fairing may take a patch off the function's surface, as a share of its diagonal: as much as that
+/// surface sags by across a gap. Where fairing would take it farther, as over the flat bottom of a bust, the
+/// function, which sees the whole mesh, is the better guess.
+constexpr double near_function = 0.06;
+
 struct RefinedCompletionOptions {
   /// How many rings of vertices round the rims are in the triangulation from the beginning (at least 1).
   int rings = 3;
@@ -36,8 +41,8 @@ struct RefinedCompletionOptions {
   /// Facets with a smaller angle are refined (degrees, 0 to 30).
   double smallest_angle = 27;
   /// What is done to the patches after they were cut out. Without fairing they keep the function's shape.
-  FinishingOptions finishing = {true, SurfaceEnergy::normal_variation, std::nullopt, std::nullopt,
-                                "as cut out"};
+  FinishingOptions finishing = {
+      true, SurfaceEnergy::normal_variation, std::nullopt, std::nullopt, near_function, "as cut out"};
   /// Absent: holes are closed whole. Else only along these.
   std::optional<std::vector<RimStretch>> stretches;
 };

@@ -52,11 +52,12 @@ std::vector<ParameterDeclaration> refinement_parameters() {
       length_parameter("CushionRadius", "Cushion",
                        "Nearer than this to the mesh no vertex is put. 0: a little more than the edge "
                        "length. A percentage is of the bounding box's diagonal."),
-      choice_parameter("Fairing", "Fairing",
-                       "What the new surface minimises in the end. Thin plate: bending. Membrane: area. "
-                       "Normal variation: the change of the normals. None: it stays the reconstruction's. "
-                       "Automatic: normal variation, and none where guides shape it.",
-                       {"Automatic", "None", "Thin plate", "Membrane", "Normal variation"})};
+      choice_parameter(
+          "Fairing", "Fairing",
+          "What the new surface minimises in the end. Thin plate: bending. Membrane: area. "
+          "Normal variation: the change of the normals. None: it stays the reconstruction's. "
+          "Automatic: normal variation, but near the reconstruction; none where guides shape it.",
+          {"Automatic", "None", "Thin plate", "Membrane", "Normal variation"})};
 }
 
 PoissonCompletionOptions options_from(const ParameterValues& values) {
@@ -74,6 +75,7 @@ PoissonCompletionOptions options_from(const ParameterValues& values) {
   options.refinement.rings = values.integer("Rings");
   if (values.real("CushionRadius") > 0) options.refinement.cushion_radius = values.real("CushionRadius");
   options.refinement.finishing.fairing = energies[values.choice("Fairing")];
+  if (values.choice("Fairing") != 0) options.refinement.finishing.near_rough.reset();
   return options;
 }
 

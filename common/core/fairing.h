@@ -31,4 +31,11 @@ const char* name(SurfaceEnergy energy);  ///< "membrane", "thin plate", "normal 
 void minimize_energy(TriangleMesh& surface, const std::vector<char>& fixed, SurfaceEnergy energy,
                      LaplacianWeights weights, const Progress& progress = Progress());
 
+/// Lowers the normal variation from the shape that `surface` has, by a few steps of gradient descent: part of
+/// the way to the nearest minimum, which need not be the one that `minimize_energy` finds from the rim alone.
+/// No vertex ends farther from where it was than `largest_move` times the surface's diagonal (positive).
+/// Otherwise as `minimize_energy`.
+void lower_normal_variation(TriangleMesh& surface, const std::vector<char>& fixed, double largest_move,
+                            const Progress& progress = Progress());
+
 }  // namespace meshcomplete

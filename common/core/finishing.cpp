@@ -123,9 +123,12 @@ FinishedPatch Finisher::freely(const std::optional<SurfaceEnergy>& energy, const
   remeshing.forbidden = context_.rim.forbidden;
   remeshing.rounds = rounds_between;
   remeshing.max_vertices = most_vertices(patch, target);
-  if (energy) fair(patch, context_.rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
+  const bool keep = options_.keeps_shape(energy);
+  if (energy && !keep)
+    fair(patch, context_.rim, SurfaceEnergy::membrane, LaplacianWeights::uniform, progress);
   if (options_.remesh) remesh(patch, target, remeshing, progress);
-  for (int i = 0; energy && i < solves; ++i) {
+  if (keep) fair_near(patch, context_.rim, *options_.near_rough, progress);
+  for (int i = 0; energy && !keep && i < solves; ++i) {
     fair(patch, context_.rim, *energy, LaplacianWeights::cotangent, progress);
     if (options_.remesh && i + 1 < solves) remesh(patch, target, remeshing, progress);
   }
@@ -150,8 +153,11 @@ FinishedPatch Finisher::guarded(const Progress& progress) {
   patch.compact();
   for (int i = 0; options_.fairing && i < approaches; ++i) {
     PatchMesh goal = patch;
-    fair(goal, context_.rim, *options_.fairing,
-         i == 0 ? LaplacianWeights::uniform : LaplacianWeights::cotangent, progress);
+    if (options_.keeps_shape(options_.fairing))
+      fair_near(goal, context_.rim, *options_.near_rough / approaches, progress);
+    else
+      fair(goal, context_.rim, *options_.fairing,
+           i == 0 ? LaplacianWeights::uniform : LaplacianWeights::cotangent, progress);
     GuardedPatch guard(patch, context_.input, context_.rim.forbidden, context_.obstacles);
     guarded_approach(guard, goal.positions(), sweeps, progress);
   }

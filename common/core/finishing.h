@@ -23,8 +23,16 @@ struct FinishingOptions {
   /// What is tried instead where the patch then meets something: a membrane stays close to the rough patch,
   /// and none at all to its very shape.
   std::optional<SurfaceEnergy> calm = SurfaceEnergy::membrane;
+  /// The normal variation is lowered from the rough patch's own shape, and moves no vertex farther than this
+  /// share of the diagonal of the patch and the mesh's ring round it; absent: only the rim counts.
+  std::optional<double> near_rough;
   /// The route of a patch that could only be left as it came.
   std::string plain_route = "faces of the volumes";
+
+  /// Whether fairing with this energy keeps near the rough patch's shape.
+  bool keeps_shape(const std::optional<SurfaceEnergy>& energy) const {
+    return near_rough && energy == SurfaceEnergy::normal_variation;
+  }
 };
 
 /// What a patch is finished against.

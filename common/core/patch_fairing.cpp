@@ -22,6 +22,11 @@ TriangleMesh with_ring(const PatchMesh& patch, const Rim& rim, std::vector<char>
   return surface;
 }
 
+void move_inner(PatchMesh& patch, const TriangleMesh& surface) {
+  for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
+    patch.move(v, surface.vertices[v]);
+}
+
 }  // namespace
 
 void fair(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeights weights,
@@ -29,8 +34,14 @@ void fair(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeigh
   std::vector<char> fixed;
   TriangleMesh surface = with_ring(patch, rim, fixed);
   minimize_energy(surface, fixed, energy, weights, progress);
-  for (Index v = static_cast<Index>(patch.rim_size()); v < patch.vertex_count(); ++v)
-    patch.move(v, surface.vertices[v]);
+  move_inner(patch, surface);
+}
+
+void fair_near(PatchMesh& patch, const Rim& rim, double largest_move, const Progress& progress) {
+  std::vector<char> fixed;
+  TriangleMesh surface = with_ring(patch, rim, fixed);
+  lower_normal_variation(surface, fixed, largest_move, progress);
+  move_inner(patch, surface);
 }
 
 }  // namespace meshcomplete

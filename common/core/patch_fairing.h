@@ -14,4 +14,7 @@ namespace meshcomplete {
 void fair(PatchMesh& patch, const Rim& rim, SurfaceEnergy energy, LaplacianWeights weights,
           const Progress& progress = Progress());
 
+/// The same, but lowers the normal variation from the shape that the patch has, as `lower_normal_variation`.
+void fair_near(PatchMesh& patch, const Rim& rim, double largest_move, const Progress& progress = Progress());
+
 }  // namespace meshcomplete

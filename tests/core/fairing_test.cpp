@@ -372,6 +372,70 @@ TEST(Fairing, CanBeCancelled) {
       Cancelled);
 }
 
+/// A square, flat at its border, with a hump of its free vertices.
+Case hump(double height) {
+  Case c = sheet(20, 3, 7);
+  for (Index v = 0; v < c.surface.vertices.size(); ++v) {
+    Vector3& p = c.surface.vertices[v];
+    if (!c.fixed[v])
+      p.z() = height * std::pow(std::cos(pi * (p.x() / 20 - 0.5)) * std::cos(pi * (p.y() / 20 - 0.5)), 2);
+  }
+  return c;
+}
+
+double highest(const TriangleMesh& surface) {
+  double z = 0;
+  for (const Vector3& p : surface.vertices) z = std::max(z, p.z());
+  return z;
+}
+
+double variation_of_normals(const TriangleMesh& surface) {
+  std::map<std::pair<Index, Index>, Vector3> first;
+  double sum = 0;
+  for (const Triangle& t : surface.triangles) {
+    const Vector3 &a = surface.vertices[t[0]], &b = surface.vertices[t[1]], &c = surface.vertices[t[2]];
+    const Vector3 normal = (b - a).cross(c - a).normalized();
+    for (int k = 0; k < 3; ++k) {
+      const Index v = t[k], w = t[(k + 1) % 3];
+      const auto [found, added] = first.emplace(std::minmax(v, w), normal);
+      if (!added) sum += (surface.vertices[v] - surface.vertices[w]).norm() * (1 - found->second.dot(normal));
+    }
+  }
+  return sum;
+}
+
+TEST(Fairing, LoweringStartsFromTheShapeThatIsThere) {
+  const Case before = hump(6);
+  Case from_rim = before, from_shape = before;
+  minimize_energy(from_rim.surface, before.fixed, SurfaceEnergy::normal_variation,
+                  LaplacianWeights::cotangent);
+  EXPECT_LT(highest(from_rim.surface), 0.1);
+  const double diagonal = Vector3(20, 20, 6).norm();
+  lower_normal_variation(from_shape.surface, before.fixed, 0.06);
+  EXPECT_GT(highest(from_shape.surface), 6 - 0.07 * diagonal);
+  EXPECT_LT(variation_of_normals(from_shape.surface), 0.9 * variation_of_normals(before.surface));
+}
+
+TEST(Fairing, LoweringMovesNoVertexFartherThanAllowed) {
+  const Case before = hump(6);
+  Eigen::AlignedBox3d box;
+  for (const Vector3& p : before.surface.vertices) box.extend(p);
+  double last = 0;
+  for (double share : {0.005, 0.02, 0.06}) {
+    Case c = before;
+    lower_normal_variation(c.surface, c.fixed, share);
+    double longest = 0;
+    for (Index v = 0; v < c.surface.vertices.size(); ++v) {
+      const double move = (c.surface.vertices[v] - before.surface.vertices[v]).norm();
+      if (c.fixed[v]) EXPECT_EQ(move, 0);
+      longest = std::max(longest, move);
+    }
+    EXPECT_LE(longest, share * box.diagonal().norm() * (1 + 1e-9));
+    EXPECT_GT(longest, last);
+    last = longest;
+  }
+}
+
 TEST(Fairing, EnergiesHaveNames) {
   EXPECT_STREQ(name(SurfaceEnergy::membrane), "membrane");
   EXPECT_STREQ(name(SurfaceEnergy::thin_plate), "thin plate");

@@ -89,6 +89,25 @@ double mean_edge(const std::vector<Vector3>& vertices, const std::vector<Triangl
   return sum / (3.0 * static_cast<double>(triangles.size()));
 }
 
+// The upper half of a ball, open below, whose oracle knows that the bottom is flat. From its rim alone it
+// could as well go on as a ball.
+TEST(CompletionByRefinement, FairingKeepsAFlatBottomAboutFlat) {
+  const TriangleMesh bowl = without(test::icosphere(4), [](const Vector3& p) { return p[2] < 0; });
+  const Oracle half([](const Vector3& p) { return std::max(p.norm() - 1, -0.05 - p[2]); });
+  const auto lowest = [&](const RefinedCompletionOptions& options) {
+    const Completed run = complete(bowl, half, options);
+    EXPECT_EQ(run.result.completion.report.count(HoleOutcome::closed), 1u);
+    double z = 0;
+    for (const Vector3& p : run.result.completion.patch.vertices) z = std::min(z, p[2]);
+    return z;
+  };
+  RefinedCompletionOptions options;
+  const double diagonal = 2 * std::sqrt(2.0);
+  EXPECT_GT(lowest(options), -0.05 - (near_function + 0.01) * diagonal);
+  options.finishing.near_rough.reset();
+  EXPECT_LT(lowest(options), -0.5);
+}
+
 TEST(CompletionByRefinement, ClosesAllHoles) {
   for (const Case& one : cases()) {
     SCOPED_TRACE(one.name);
