@@ -68,13 +68,13 @@ TEST(CompletionOracle, CubesAreAsLargeAsTheEdgesAtTheRimAndGrowAwayFromIt) {
 TEST(CompletionOracle, WhatIsNotToBeClosedIsNotFine) {
   const TriangleMesh two =
       test::join(test::sphere_with_hole(3, 0.8),
-                 test::translated(test::scaled(test::sphere_with_hole(3, 0.8), 0.125), {3, 0, 0}));
-  HoleSelectionOptions largest;
-  largest.keep_largest = true;
-  const PoissonOracle all = oracle_of(two), one = oracle_of(two, {}, {}, largest);
+                 test::translated(test::scaled(test::sphere_with_hole(3, 0.8), 0.125), Vector3(3, 0, 0)));
+  HoleSelectionOptions small_only;
+  small_only.keep_largest = true;
+  const PoissonOracle all = oracle_of(two), one = oracle_of(two, {}, {}, small_only);
   EXPECT_LT(one.figures.cubes, all.figures.cubes);
-  const Vector3 small_rim(3 + 0.125 * std::sin(0.8), 0, 0.125 * std::cos(0.8));
-  EXPECT_LT(all.field.leaf_size(small_rim), one.field.leaf_size(small_rim));
+  const Vector3 large_rim(-std::sin(0.8), 0, std::cos(0.8));
+  EXPECT_LT(all.field.leaf_size(large_rim), one.field.leaf_size(large_rim));
 }
 
 // A shell with walls far thinner than its edges: three cubes have to lie between its sides.
