@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/core/completion_oracle.h"
 #include "common/core/hole_targets.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/parameter_checks.h"
@@ -35,19 +36,9 @@ constexpr int most_retries = 2;
 // Of meshes with longer boundaries several octrees take too much memory.
 constexpr std::size_t most_edges_at_once = 10000;
 
-std::string describe(Sheet::Flaw flaw) {
-  switch (flaw) {
-    case Sheet::Flaw::none:
-      break;
-    case Sheet::Flaw::open:
-      return "space round this rim could not be divided: faces touch or intersect each other there, or "
-             "MaxDepth is too small";
-    case Sheet::Flaw::joins_vertices:
-      return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
-             "'Merge Close Vertices' first";
-  }
-  return "";
-}
+const char* const undivided =
+    "space round this rim could not be divided: faces touch or intersect each other there, or "
+    "MaxDepth is too small";
 
 double area(const LabelledSurface& surface) {
   double twice = 0;
@@ -60,12 +51,13 @@ double area(const LabelledSurface& surface) {
 
 class Run {
  public:
-  Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
-      const AtomicVolumesOptions& options, CompletionReport& report)
+  Run(const TriangleMesh& mesh, const OpenMesh& open, const AtomicVolumesOptions& options,
+      CompletionReport& report)
       : mesh_(mesh),
-        topology_(topology),
-        loops_(loops),
-        loop_numbers_(mesh, loops),
+        open_(open),
+        topology_(open.topology),
+        loops_(open.loops),
+        loop_numbers_(mesh, open.loops),
         options_(options),
         input_(mesh),
         report_(report) {}
@@ -79,6 +71,7 @@ class Run {
   const TriangleMesh& divided_mesh() const { return divisible_ ? divisible_->mesh : mesh_; }
   const MeshTopology& divided_topology() const { return divisible_ ? divisible_->topology : topology_; }
   const InputNeighbourhood& divided() const { return divisible_ ? divisible_->neighbourhood : input_; }
+  const ImplicitFunction* oracle() const { return oracle_ ? &*oracle_ : nullptr; }
   VolumeSolution solve(int shift, const AtomicVolumesOptions& options, const PreparedConstraints& constraints,
                        const Progress& progress) const;
   std::vector<Sheet> sheets_of(const LabelledSurface& surface) const;
@@ -93,12 +86,14 @@ class Run {
                   const Progress& progress);
 
   const TriangleMesh& mesh_;
+  const OpenMesh& open_;
   const MeshTopology& topology_;
   const std::vector<BoundaryLoop>& loops_;
   const LoopNumbers loop_numbers_;
   const AtomicVolumesOptions& options_;
   const InputNeighbourhood input_;
   std::unique_ptr<DivisibleMesh> divisible_;  // null: space is divided by the mesh itself
+  std::optional<OctreeField> oracle_;         // for the weight that asks for one
   CompletionReport& report_;
   std::vector<PatchPiece> pieces_;
   std::vector<char> blocked_;  // loops whose patch has another one in it that is not to be closed
@@ -107,7 +102,7 @@ class Run {
 VolumeSolution Run::solve(int shift, const AtomicVolumesOptions& options,
                           const PreparedConstraints& constraints, const Progress& progress) const {
   return solve_volumes(divided_mesh(), divided_topology(), divided(), options, constraints,
-                       seed_of_division(options, shift), progress);
+                       seed_of_division(options, shift), oracle(), progress);
 }
 
 std::vector<Sheet> Run::sheets_of(const LabelledSurface& surface) const {
@@ -121,8 +116,9 @@ std::vector<PatchPiece> Run::pieces_of(const LabelledSurface& surface) const {
 SolutionVote Run::vote(std::size_t shift, const VolumeSolution& solution) const {
   SolutionVote vote;
   vote.number = shift;
-  // With hints a smaller patch may cost more.
-  vote.cost = solution.ties.empty() ? area(solution.surface) : solution.labelling.weight;
+  // With hints a smaller patch may cost more, and one that keeps to the oracle may be larger.
+  const bool by_area = solution.ties.empty() && !oracle_;
+  vote.cost = by_area ? area(solution.surface) : solution.labelling.weight;
   const std::vector<PatchPiece> pieces = pieces_of(solution.surface);
   for (const std::vector<std::size_t>& group : group_by_loops(pieces)) {
     std::vector<std::size_t> loops = loops_of(pieces, group);
@@ -155,7 +151,7 @@ VolumeSolution Run::best_solution(const PreparedConstraints& constraints, const 
   if (!best)
     best.emplace(
         solve(static_cast<int>(poll.winner()), options_, constraints, progress.part(1, 1, "dividing space")));
-  smooth(*best, options_, constraints, progress.part(1, 1, "smoothing the patches"));
+  smooth(*best, options_, constraints, oracle(), progress.part(1, 1, "smoothing the patches"));
   return std::move(*best);
 }
 
@@ -171,9 +167,8 @@ std::vector<char> Run::left_open() const {
     const std::vector<std::size_t> loops = loops_of(pieces_, group);
     for (std::size_t loop : loops) {
       reached[loop] = 1;
-      open[loop] =
-          defect || blocked_[loop] ||
-          ((may_divide || loops.size() > 1) && report_.holes[loop].reason == describe(Sheet::Flaw::open));
+      open[loop] = defect || blocked_[loop] ||
+                   ((may_divide || loops.size() > 1) && report_.holes[loop].reason == undivided);
     }
   }
   for (std::size_t i = 0; i < loops_.size(); ++i) open[i] |= is_targeted(report_.holes[i]) && !reached[i];
@@ -246,7 +241,7 @@ bool Run::try_others(const PreparedConstraints& constraints, const PieceFinisher
       if (any_blocked || tries > 0) options.weight = CutWeight::area;
       VolumeSolution solution =
           solve(options_.shifts + tries, options, constraints, part.part(0, 0.5, stage));
-      smooth(solution, options, constraints, part.part(0.5, 0.5, stage));
+      smooth(solution, options, constraints, oracle(), part.part(0.5, 0.5, stage));
       fresh = pieces_of(solution.surface);
     }
     const std::size_t first = replace(std::move(fresh), open);
@@ -276,7 +271,7 @@ bool Run::close_with_triangles(const Progress& progress) {
   std::vector<PatchPiece> triangles;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     HoleReport& hole = report_.holes[i];
-    const bool left = is_targeted(hole) || hole.reason == describe(Sheet::Flaw::open);
+    const bool left = is_targeted(hole) || hole.reason == undivided;
     if (loops_[i].vertices.size() != 3 || !left || closed[i] || shared[i]) continue;
     PatchPiece piece;
     piece.loops = {i};
@@ -298,18 +293,25 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
   StageClock clock(report_);
   divisible_ = make_divisible(mesh_, topology_, input_, progress);
   if (divisible_ && divisible_->merged) refuse_sewn_rims(mesh_, divisible_->topology, loops_, report_.holes);
+  if (options_.weight == CutWeight::poisson) {
+    oracle_ =
+        make_completion_oracle(mesh_, open_, input_, {}, {}, progress.part(0, 0.1, "building the oracle"))
+            .field;
+    clock.end_of("building the oracle");
+  }
   const PreparedConstraints constraints(divided_mesh(), divided_topology(), divided(), options_.constraints,
                                         progress.part(0, 0, ""));
   AtomicVolumesFigures figures;
   {
-    const VolumeSolution solution = best_solution(constraints, progress.part(0, 0.4, "dividing space"));
+    const VolumeSolution solution = best_solution(constraints, progress.part(0.1, 0.4, "dividing space"));
     figures = solution.figures;
     std::vector<Sheet> sheets = sheets_of(solution.surface);
     for (const auto& notes :
          {constraints.notes(), solution.notes, describe_bubbles(sheets, options_.constraints)})
       report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
     pieces_ = make_pieces(std::move(sheets), topology_, loop_numbers_);
-    blocked_ = choose_pieces(pieces_, loops_, report_.holes, [](Sheet::Flaw flaw) { return describe(flaw); });
+    blocked_ = choose_pieces(pieces_, loops_, report_.holes,
+                             [](Sheet::Flaw flaw) { return describe(flaw, undivided); });
   }
   clock.end_of("dividing space and cutting");
   const PieceFinisher finisher(mesh_, topology_, input_, divided(),
@@ -356,7 +358,7 @@ AtomicVolumesResult fill_by_atomic_volumes(const TriangleMesh& mesh, const MeshS
   const OpenMesh open =
       find_holes(mesh, selection, options.holes, progress.part(0, 0.1, "finding the holes"));
   report.holes = open.holes;
-  Run run(mesh, open.topology, open.loops, options, report);
+  Run run(mesh, open, options, report);
   clock.end_of("finding the holes");
   AtomicVolumesFigures figures;
   if (run.anything_to_do()) figures = run.close(progress.part(0.1, 1, "dividing space"));

@@ -26,6 +26,7 @@ enum class CutWeight {
   area,      ///< the area of the patch
   unit,      ///< the number of its faces
   balanced,  ///< in between: the fourth roots of the areas of its faces
+  poisson,   ///< the area of its faces, which counts less near a Poisson reconstruction of the mesh
 };
 
 /// How the stairs of the octree are taken out of a patch before it is faired (paper, section 5).

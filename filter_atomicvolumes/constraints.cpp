@@ -61,11 +61,11 @@ Eigen::AlignedBox3d bounds(const TriangleMesh& mesh) {
 class Tier {
  public:
   Tier(const LatticeMesh& mesh, const Decomposition& decomposition, const VolumeComplex& complex,
-       CutWeight weight, const PreparedConstraints& constraints)
+       const FaceCost& cost, const PreparedConstraints& constraints)
       : mesh_(mesh),
         decomposition_(decomposition),
         complex_(complex),
-        weight_(weight),
+        cost_(cost),
         constraints_(constraints) {}
 
   TiedConstraints run(const Progress& progress);
@@ -88,7 +88,7 @@ class Tier {
   const LatticeMesh& mesh_;
   const Decomposition& decomposition_;
   const VolumeComplex& complex_;
-  const CutWeight weight_;
+  const FaceCost cost_;
   const PreparedConstraints& constraints_;
   std::vector<std::uint8_t> marks_;                   // per node
   std::vector<std::pair<Cell, VolumePlace>> marked_;  // every node that a point lies in, with duplicates
@@ -174,7 +174,7 @@ void Tier::carve(const Progress& progress) {
 void Tier::tie_hints(const std::vector<Vector3>& points, bool inside, const Progress& progress) {
   if (points.empty()) return;
   double price = constraints_.given().hint_price * constraints_.diagonal() * constraints_.diagonal();
-  if (weight_ != CutWeight::area) price *= faces_.mean_cost / faces_.mean_area;
+  if (cost_.weight() != CutWeight::area) price *= faces_.mean_cost / faces_.mean_area;
   for (const VolumePlace& place : places_of(points, progress))
     if (place.kind == VolumePlace::free) result_.ties.push_back({place.node, inside, price});
 }
@@ -224,7 +224,7 @@ TiedConstraints Tier::run(const Progress& progress) {
   progress.update(0.2);
   carve(progress);
   progress.update(0.4);
-  faces_ = measure_faces(mesh_, complex_, weight_);
+  faces_ = measure_faces(mesh_, complex_, cost_, progress);
   tie_hints(given.hinted_inside, true, progress);
   tie_hints(given.hinted_outside, false, progress);
   progress.update(0.5);
@@ -290,10 +290,10 @@ void PreparedConstraints::leave_out_useless_points() {
 }
 
 TiedConstraints tie_constraints(const LatticeMesh& mesh, const Decomposition& decomposition,
-                                const VolumeComplex& complex, CutWeight weight,
+                                const VolumeComplex& complex, const FaceCost& cost,
                                 const PreparedConstraints& constraints, const Progress& progress) {
   if (constraints.empty()) return {};
-  return Tier(mesh, decomposition, complex, weight, constraints).run(progress);
+  return Tier(mesh, decomposition, complex, cost, constraints).run(progress);
 }
 
 }  // namespace meshcomplete

@@ -83,7 +83,7 @@ struct TiedConstraints {
 /// cost (for points what as many faces cost as have that area on average). Deterministic. Cost: O(points *
 /// log faces + lines * leaves passed + nodes * images under symmetries * log faces), threaded.
 TiedConstraints tie_constraints(const LatticeMesh& mesh, const Decomposition& decomposition,
-                                const VolumeComplex& complex, CutWeight weight,
+                                const VolumeComplex& complex, const FaceCost& cost,
                                 const PreparedConstraints& constraints,
                                 const Progress& progress = Progress());
 

@@ -61,7 +61,7 @@ std::vector<Index> Remover::offending(const Progress& progress) const {
   const InputNeighbourhood neighbourhood(mesh);
   const PreparedConstraints constraints(mesh, open.topology, neighbourhood, options_.constraints, progress);
   const VolumeSolution solution =
-      solve_volumes(mesh, open.topology, neighbourhood, options_, constraints, seed_, progress);
+      solve_volumes(mesh, open.topology, neighbourhood, options_, constraints, seed_, nullptr, progress);
   return offending_faces(solution.mesh, solution.decomposition, rims);
 }
 

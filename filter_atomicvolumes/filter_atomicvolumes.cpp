@@ -40,9 +40,9 @@ std::vector<ParameterDeclaration> cut_parameters() {
                         "The filter stops with a message when it would need more volumes than this.",
                         "volumes", 5000000, 1000, any),
       choice_parameter("Weight", "Make small",
-                       "What there is little of in the end. Area: caps rather than bridges. Number of faces: "
-                       "bridges rather than caps. Balanced: in between.",
-                       {"Balanced", "Area", "Number of faces"}),
+                       "What there is little of in the end. Area: rather caps. Number of faces: rather "
+                       "bridges. Balanced: in between. Poisson: area, near a Poisson reconstruction.",
+                       {"Balanced", "Area", "Number of faces", "Poisson"}),
       integer_parameter("Shifts", "Divisions tried", "So many randomly placed divisions of space are tried.",
                         "divisions", 3, 1, 100),
       integer_parameter("Seed", "Seed", "Start of the random numbers.", "", 1, 0, any)};
@@ -103,12 +103,11 @@ AtomicVolumesOptions options_from(const ParameterValues& values) {
   constexpr std::optional<SurfaceEnergy> energies[] = {SurfaceEnergy::thin_plate, SurfaceEnergy::membrane,
                                                        SurfaceEnergy::normal_variation, std::nullopt};
   AtomicVolumesOptions options;
-  const int depth = values.integer("MaxDepth");
-  if (depth == 1 || depth == 2)
+  if (const int depth = values.integer("MaxDepth"); depth > 0) options.max_depth = depth;
+  if (options.max_depth.value_or(3) < 3)
     throw CompletionError(stage, "Parameter \"MaxDepth\" must be 0, for any depth, or at least 3.");
-  if (depth > 0) options.max_depth = depth;
   options.node_budget = static_cast<std::size_t>(values.integer("NodeBudget"));
-  constexpr CutWeight weights[] = {CutWeight::balanced, CutWeight::area, CutWeight::unit};
+  constexpr CutWeight weights[] = {CutWeight::balanced, CutWeight::area, CutWeight::unit, CutWeight::poisson};
   options.weight = weights[values.choice("Weight")];
   options.shifts = values.integer("Shifts");
   options.seed = static_cast<std::uint64_t>(values.integer("Seed"));

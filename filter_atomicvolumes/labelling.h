@@ -6,7 +6,7 @@
 
 #include "common/core/graph_cut.h"
 #include "common/core/progress.h"
-#include "filter_atomicvolumes/atomic_volumes.h"
+#include "filter_atomicvolumes/face_cost.h"
 #include "filter_atomicvolumes/volume_complex.h"
 
 namespace meshcomplete {
@@ -27,21 +27,19 @@ struct Labelling {
   }
 };
 
-/// What a face of this area, in mesh units squared, costs the cut.
-double cost_of_face(CutWeight weight, double area);
-
 /// What the faces of volumes come to.
 struct FaceMeasure {
   std::vector<double> of_node;          ///< per node: what its faces cost
   double mean_area = 1, mean_cost = 1;  ///< of a face, mesh units squared and what it costs
 };
 
-/// As the cut counts them: a square between two cubes is one face. Cost: O(faces).
-FaceMeasure measure_faces(const LatticeMesh& mesh, const VolumeComplex& complex, CutWeight weight);
+/// As the cut counts them: a square between two cubes is one face. Cost: O(faces), threaded.
+FaceMeasure measure_faces(const LatticeMesh& mesh, const VolumeComplex& complex, const FaceCost& cost,
+                          const Progress& progress = Progress());
 
 /// The labelling of least weight. Source: the paper's section 4. Faces beside unknown volumes cost nothing.
 /// Cost: that of the minimum cut, near-linear in practice.
-Labelling cut_complex(const LatticeMesh& mesh, const VolumeComplex& complex, CutWeight weight,
+Labelling cut_complex(const LatticeMesh& mesh, const VolumeComplex& complex, const FaceCost& cost,
                       const std::vector<NodeTie>& ties, const Progress& progress = Progress());
 
 }  // namespace meshcomplete

@@ -22,7 +22,7 @@ struct VolumeSmoothingOptions {
   double suggestion = 0.3;
   /// What the cut after the suggestions makes small. Where that is the number of faces, a suggestion costs
   /// this share of a sixth of the cube's faces.
-  CutWeight weight = CutWeight::area;
+  FaceCost cost = CutWeight::area;
 };
 
 struct VolumeSmoothingFigures {

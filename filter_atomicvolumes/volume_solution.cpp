@@ -116,7 +116,8 @@ void check_budget(const VolumeComplex& complex, const AtomicVolumesOptions& opti
 // then labels the volumes. `distance` is the shortest between rim vertices; cubes smaller than `least` count
 // as a coincidence.
 void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
-           const PreparedConstraints& constraints, double distance, double least, const Progress& progress) {
+           const PreparedConstraints& constraints, const FaceCost& cost, double distance, double least,
+           const Progress& progress) {
   DecompositionOptions division;
   division.max_depth = options.max_depth.value_or(Lattice::depth);
   division.cube_budget = options.node_budget;
@@ -132,7 +133,7 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
     solution.complex = build_complex(solution.mesh, octree, progress.part(0.3, 0.7, stage));
     check_budget(solution.complex, options);
     if (!constraints.empty())
-      tied = tie_constraints(solution.mesh, octree, solution.complex, options.weight, constraints, progress);
+      tied = tie_constraints(solution.mesh, octree, solution.complex, cost, constraints, progress);
     if (i == most_refinements) break;
     std::vector<Index>& disagreeing = solution.complex.disagreeing;
     const auto too_small = [&](Index cube) {
@@ -146,7 +147,7 @@ void solve(VolumeSolution& solution, const AtomicVolumesOptions& options,
   }
   solution.notes = std::move(tied.notes);
   solution.ties = std::move(tied.ties);
-  solution.labelling = cut_complex(solution.mesh, solution.complex, options.weight, solution.ties,
+  solution.labelling = cut_complex(solution.mesh, solution.complex, cost, solution.ties,
                                    progress.part(0.7, 0.9, "computing the minimum cut"));
   solution.surface = extract(solution.mesh, octree.octree, solution.complex, solution.labelling);
 }
@@ -171,7 +172,7 @@ std::vector<VolumePoint> points_in_volumes(const VolumeSolution& solution,
 VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topology,
                              const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
                              const PreparedConstraints& constraints, std::uint64_t seed,
-                             const Progress& progress) {
+                             const ImplicitFunction* oracle, const Progress& progress) {
   std::mt19937_64 random(seed);
   const double distance = shortest_distance(mesh, topology), leaf = least_leaf(mesh);
   for (int restart = 0; restart <= most_restarts; ++restart) {
@@ -179,7 +180,8 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
         {mesh, topology, neighbourhood, place_root(mesh, random)}, {}, {}, {}, {}, {}, {}, {}};
     try {
       const bool may_be_fine = restart >= most_fine_restarts || closest_contradiction * distance < leaf;
-      solve(solution, options, constraints, distance, may_be_fine ? 0 : leaf, progress);
+      solve(solution, options, constraints, FaceCost(options.weight, oracle), distance,
+            may_be_fine ? 0 : leaf, progress);
     } catch (const Coincidence&) {
       continue;
     }
@@ -195,19 +197,20 @@ VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topol
 }
 
 void smooth(VolumeSolution& solution, const AtomicVolumesOptions& options,
-            const PreparedConstraints& constraints, const Progress& progress) {
+            const PreparedConstraints& constraints, const ImplicitFunction* oracle,
+            const Progress& progress) {
   if (options.smoothing == VolumeSmoothing::none || options.smoothing_iterations == 0) return;
   VolumeSmoothingOptions smoothing;
   smoothing.iterations = options.smoothing_iterations;
   smoothing.moving_centres = options.moving_centres;
-  smoothing.weight = options.weight;
+  smoothing.cost = FaceCost(options.weight, oracle);
   smoothing.points = points_in_volumes(solution, constraints);
   if (options.smoothing == VolumeSmoothing::two_pass) {
     std::vector<NodeTie> ties = suggest_by_springs(solution.mesh, solution.decomposition, solution.complex,
                                                    solution.surface, smoothing, progress.part(0, 0.3, ""));
     ties.insert(ties.end(), solution.ties.begin(), solution.ties.end());
     solution.labelling =
-        cut_complex(solution.mesh, solution.complex, options.weight, ties, progress.part(0.3, 0.5, ""));
+        cut_complex(solution.mesh, solution.complex, smoothing.cost, ties, progress.part(0.3, 0.5, ""));
     solution.surface =
         extract(solution.mesh, solution.decomposition.octree, solution.complex, solution.labelling);
   }

@@ -33,17 +33,18 @@ inline std::uint64_t seed_of_division(const AtomicVolumesOptions& options, int i
 }
 
 /// Divides space round the mesh, with the root cube where `seed` puts it, and labels the volumes. Starts
-/// again elsewhere when features coincide. Throws CompletionError beyond the node budget, `Cancelled`.
-/// Deterministic.
+/// again elsewhere when features coincide. `oracle` is for `CutWeight::poisson`. Throws CompletionError
+/// beyond the node budget, `Cancelled`. Deterministic.
 VolumeSolution solve_volumes(const TriangleMesh& mesh, const MeshTopology& topology,
                              const InputNeighbourhood& neighbourhood, const AtomicVolumesOptions& options,
                              const PreparedConstraints& constraints, std::uint64_t seed,
-                             const Progress& progress = Progress());
+                             const ImplicitFunction* oracle = nullptr, const Progress& progress = Progress());
 
 /// Smooths the surface of a solution as the options say (paper, section 5); two passes cut anew in between.
 /// Points of the constraints stay in their volumes. Throws `Cancelled`. Cost: O(volumes at the patch) per
 /// iteration, and that of another cut.
 void smooth(VolumeSolution& solution, const AtomicVolumesOptions& options,
-            const PreparedConstraints& constraints, const Progress& progress = Progress());
+            const PreparedConstraints& constraints, const ImplicitFunction* oracle = nullptr,
+            const Progress& progress = Progress());
 
 }  // namespace meshcomplete

@@ -23,7 +23,8 @@ class Suggester {
 
   std::vector<NodeTie> run(const Progress& progress) {
     relax(progress);
-    if (options_.weight != CutWeight::area) faces_ = measure_faces(mesh_, complex_, options_.weight);
+    if (options_.cost.weight() != CutWeight::area)
+      faces_ = measure_faces(mesh_, complex_, options_.cost, progress);
     progress.update(0.5);
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
       if (t % 256 == 0) progress.check();
@@ -48,8 +49,8 @@ class Suggester {
   std::vector<NodeTie> ties() const;
   // Of a cube's six faces one, as the cut counts it; smaller neighbours divide it.
   double face_of(Cell node, double side) const {
-    return options_.weight == CutWeight::area ? side * side
-                                              : faces_.of_node[static_cast<std::size_t>(node)] / 6;
+    return options_.cost.weight() == CutWeight::area ? side * side
+                                                     : faces_.of_node[static_cast<std::size_t>(node)] / 6;
   }
 
   const LatticeMesh& mesh_;

@@ -35,19 +35,9 @@ constexpr double thin_cushion = 0.15;
 // the same way.
 constexpr double most_growth = 2;
 
-std::string describe(Sheet::Flaw flaw) {
-  switch (flaw) {
-    case Sheet::Flaw::none:
-      break;
-    case Sheet::Flaw::open:
-      return "the reconstructed surface does not separate this hole from the rest of the mesh; where its "
-             "boundary is noisy, try 1 or more for 'RemoveRings'";
-    case Sheet::Flaw::joins_vertices:
-      return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
-             "'Merge Close Vertices' first";
-  }
-  return "";
-}
+const char* const not_separated =
+    "the reconstructed surface does not separate this hole from the rest of the mesh; where its "
+    "boundary is noisy, try 1 or more for 'RemoveRings'";
 
 class Run {
  public:
@@ -171,7 +161,8 @@ RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTop
   if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
     Run run(mesh, topology, loops, merged.get(), input, function, options, report);
     pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));
-    choose_pieces(pieces, loops, report.holes, [](Sheet::Flaw flaw) { return describe(flaw); });
+    choose_pieces(pieces, loops, report.holes,
+                  [](Sheet::Flaw flaw) { return describe(flaw, not_separated); });
     if (options.stretches) keep_pieces_at(*options.stretches, pieces, report.holes);
     StageClock clock(report);
     FinishingOptions finishing = options.finishing;

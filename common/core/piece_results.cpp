@@ -41,6 +41,19 @@ HoleReport& merge_holes(const std::vector<std::size_t>& loops, std::vector<HoleR
 
 }  // namespace
 
+std::string describe(Sheet::Flaw flaw, const std::string& open) {
+  switch (flaw) {
+    case Sheet::Flaw::none:
+      break;
+    case Sheet::Flaw::open:
+      return open;
+    case Sheet::Flaw::joins_vertices:
+      return "vertices of this rim lie at the same position, and the patch would have to join them; apply "
+             "'Merge Close Vertices' first";
+  }
+  return "";
+}
+
 std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vector<BoundaryLoop>& loops,
                                 std::vector<HoleReport>& holes,
                                 const std::function<std::string(Sheet::Flaw)>& describe_flaw) {

@@ -12,6 +12,9 @@
 
 namespace meshcomplete {
 
+/// What a user is told of a flaw. Why a sheet is open only the filter knows: that is `open`.
+std::string describe(Sheet::Flaw flaw, const std::string& open);
+
 /// Marks the pieces that close targeted loops as wanted, as far as nothing keeps their groups from closing
 /// all their loops, and tells the targeted holes whose patches are not wanted why. `describe_flaw` says what
 /// a user is told of a flaw. Returns for each loop whether its patch closes another loop too that is to stay

@@ -17,8 +17,8 @@ std::optional<double> wall_thickness(const TriangleBlocks& mesh, const Vector3& 
     const double determinant = u.dot(across);
     // Faces that look the same way as the point's own have a positive one.
     if (!(u.cross(v).dot(normal) < 0) || determinant == 0) return true;
-    const double s = from.dot(across) / determinant, t = along.dot(normal) / determinant;
-    const double distance = -along.dot(v) / determinant;
+    const double s = from.dot(across) / determinant, t = -along.dot(normal) / determinant;
+    const double distance = along.dot(v) / determinant;
     if (s >= 0 && t >= 0 && s + t <= 1 && distance > skip && distance < nearest.value_or(reach))
       nearest = distance;
     return true;

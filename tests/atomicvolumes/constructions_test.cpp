@@ -149,6 +149,7 @@ TEST(Constructions, TheWeightDecidesHowWideAGapIsBridged) {
   EXPECT_EQ(bridged(CutWeight::area), 0) << "the caps' discs have less area than a band";
   EXPECT_GT(bridged(CutWeight::balanced), 0);
   EXPECT_EQ(bridged(CutWeight::unit), 8);
+  EXPECT_EQ(bridged(CutWeight::poisson), 8) << "the reconstruction is a whole ball";
 }
 
 // --- meshes with flaws

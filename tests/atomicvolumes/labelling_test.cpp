@@ -133,10 +133,10 @@ TEST(Labelling, TheCutIsTheLeastOfAll) {
 }
 
 TEST(Labelling, WhatFacesCost) {
-  EXPECT_EQ(cost_of_face(CutWeight::area, 0.0625), 0.0625);
-  EXPECT_EQ(cost_of_face(CutWeight::balanced, 0.0625), 0.5);
-  EXPECT_EQ(cost_of_face(CutWeight::balanced, 16), 2);
-  EXPECT_EQ(cost_of_face(CutWeight::unit, 0.0625), 1);
+  EXPECT_EQ(FaceCost(CutWeight::area).most(0.0625), 0.0625);
+  EXPECT_EQ(FaceCost(CutWeight::balanced).most(0.0625), 0.5);
+  EXPECT_EQ(FaceCost(CutWeight::balanced).most(16), 2);
+  EXPECT_EQ(FaceCost(CutWeight::unit).most(0.0625), 1);
   for (CutWeight weight : {CutWeight::area, CutWeight::balanced, CutWeight::unit}) {
     const PlacedMesh placed(test::sphere_with_hole(1, 0.7), 2);
     const auto division = test::divide(placed);

@@ -410,7 +410,7 @@ TEST(VolumeSmoothing, SuggestionsCostFacesWhereTheCutCountsFaces) {
     const VolumeComplex& complex = cut.division.complex;
     const FaceMeasure faces = measure_faces(cut.placed.lattice_mesh, complex, weight);
     VolumeSmoothingOptions options;
-    options.weight = weight;
+    options.cost = weight;
     const std::vector<NodeTie> ties = suggest_by_springs(cut.placed.lattice_mesh, cut.division.decomposition,
                                                          complex, cut.surface, options);
     ASSERT_FALSE(ties.empty());

@@ -5,9 +5,11 @@ import math
 import os
 import pathlib
 import shutil
+import signal
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 
 PROGRAM = os.environ["MESHCOMPLETE"]
@@ -269,3 +271,25 @@ class ClosingCase(RunnerCase):
         self.assertFalse(os.path.exists(self.path("out.ply")), result.stderr)
         self.assertEqual(contents(), before)
         return result.stderr
+
+    def assert_cancels(self, *parameters, delays):
+        """Ctrl-C after each of these delays (seconds) ends a run that would take long, soon, and nothing is written."""
+        for delay in delays:
+            process = subprocess.Popen(self.command("-i", "in.ply", "-f", self.filter, "-p", *parameters, "-o", "out.ply"),
+                                       cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(delay)
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            # A signal that comes before the program's first line ends it as it ends any program.
+            self.assertIn(process.wait(timeout=60), (130, -signal.SIGINT))
+            self.assertLess(time.monotonic() - start, 5)
+            self.assertFalse(os.path.exists(self.path("out.ply")))
+
+    def assert_threads_do_not_matter(self):
+        """One thread, two, and two again give the same file."""
+        results = []
+        for threads in (1, 2, 2):
+            self.check(0, "-i", "in.ply", "-f", self.filter, "-o", "out.ply", "--threads", threads)
+            results.append(pathlib.Path(self.path("out.ply")).read_bytes())
+        self.assertEqual(results[0], results[1])
+        self.assertEqual(results[1], results[2])

@@ -1,10 +1,6 @@
 """Close Holes: Atomic Volumes, run the way users run it: gaps and islands, what other layers say, and messages."""
 
 import math
-import os
-import signal
-import subprocess
-import time
 import unittest
 
 from runner_case import CHECK, ClosingCase, Ply, bits, outer_half_torus, sphere, without, write_ply
@@ -63,6 +59,18 @@ class Holes(Case):
         self.assertEqual(len(self.read_report()["holes"]), 1)
         self.assertEqual(len(self.read_report()["holes"][0]["loops"]), 2)
 
+    def test_the_weight_decides_whether_a_wide_gap_is_bridged(self):
+        """A sphere without a wide band: two disks have less area than the band, a reconstruction is the whole sphere."""
+        vertices, faces = sphere(rings=24, segments=32, hole=False)
+        self.write("in.ply", vertices, without(vertices, faces, [(-0.6, 0.6)]))
+        for weight, components in (("Area", 2), ("Poisson", 1)):
+            with self.subTest(weight):
+                self.close("Weight=" + weight)
+                self.assertIn("Watertight: yes", self.log)
+                self.assertEqual(self.components(), components)
+                stages = [stage["stage"] for stage in self.read_report()["stages"]]
+                self.assertEqual("building the oracle" in stages, weight == "Poisson")
+
     def test_only_some_holes(self):
         vertices, faces = sphere(rings=24, segments=32, hole=False)
         self.write("in.ply", vertices, without(vertices, faces, [(0.9, 1.1), (-1.1, -0.7)]))
@@ -85,17 +93,12 @@ class Holes(Case):
 
     def test_number_of_threads_and_runs_do_not_matter(self):
         self.make_sphere("in.ply")
-        results = []
-        for threads in (1, 2, 2):
-            self.check(0, "-i", "in.ply", "-f", FILTER, "-o", "out.ply", "--threads", threads)
-            with open(self.path("out.ply"), "rb") as file:
-                results.append(file.read())
-        self.assertEqual(results[0], results[1])
-        self.assertEqual(results[1], results[2])
+        self.assert_threads_do_not_matter()
 
     def test_every_choice(self):
         self.make_sphere("in.ply")
-        for parameters in (["Weight=Number"], ["Smoothing=None"], ["Smoothing=Two"], ["MovingCentres=true"], ["Remesh=false"],
+        for parameters in (["Weight=Number"], ["Weight=Poisson"], ["Weight=3", "Smoothing=Two"], ["Smoothing=None"],
+                           ["Smoothing=Two"], ["MovingCentres=true"], ["Remesh=false"],
                            ["Fairing=Membrane"], ["Fairing=Normal"], ["Fairing=None", "Smoothing=None", "Remesh=false"],
                            ["Shifts=1", "Seed=7"], ["SmoothingIterations=0"], ["MaxDepth=12"]):
             with self.subTest(parameters):
@@ -241,16 +244,7 @@ class Cancelling(Case):
     def test_ctrl_c_ends_it_soon_and_leaves_nothing(self):
         vertices, faces = sphere(rings=120, segments=160, hole=False)
         self.write("in.ply", vertices, without(vertices, faces, [(-0.3, 0.3)]))
-        for delay in (0.5, 1.5):
-            process = subprocess.Popen(self.command("-i", "in.ply", "-f", FILTER, "-p", "Shifts=100", "-o", "out.ply"),
-                                       cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(delay)
-            start = time.monotonic()
-            process.send_signal(signal.SIGINT)
-            # A signal that comes before the program's first line ends it as it ends any program.
-            self.assertIn(process.wait(timeout=60), (130, -signal.SIGINT))
-            self.assertLess(time.monotonic() - start, 5)
-            self.assertFalse(os.path.exists(self.path("out.ply")))
+        self.assert_cancels("Shifts=100", delays=(0.5, 1.5))
 
 
 class Messages(Case):
@@ -260,6 +254,7 @@ class Messages(Case):
                                          ("MaxDepth=31", 2, "out of range"), ("NodeBudget=999", 2, "out of range"),
                                          ("HintPrice=0", 2, "greater than 0"), ("SymmetryPrice=-1", 2, "greater than 0"),
                                          ("Shifts=0", 2, "out of range"), ("SmoothingIterations=1001", 2, "out of range"),
+                                         ("Weight=4", 2, "3 = Poisson"), ("Weight=-1", 2, "0 = Balanced"),
                                          ("SymmetryPoint=1 2", 2, "has 2 numbers, not 3")):
             with self.subTest(parameter):
                 self.assertIn(message, self.refused(code, parameter))

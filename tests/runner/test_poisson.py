@@ -1,10 +1,6 @@
 """Close Holes: Poisson-driven, run the way users run it: holes of every kind, guides, and messages."""
 
 import math
-import os
-import signal
-import subprocess
-import time
 import unittest
 from collections import Counter
 
@@ -241,13 +237,7 @@ class Results(Case):
 
     def test_number_of_threads_and_runs_do_not_matter(self):
         self.write_fine((0.6, 0.75))
-        results = []
-        for threads in (1, 2, 2):
-            self.check(0, "-i", "in.ply", "-f", FILTER, "-o", "out.ply", "--threads", threads)
-            with open(self.path("out.ply"), "rb") as file:
-                results.append(file.read())
-        self.assertEqual(results[0], results[1])
-        self.assertEqual(results[1], results[2])
+        self.assert_threads_do_not_matter()
 
     def test_every_choice(self):
         before = self.write_fine((0.6, 0.75))
@@ -434,16 +424,7 @@ class Reconstruction(Case):
 class Cancelling(Case):
     def test_ctrl_c_ends_it_soon_and_leaves_nothing(self):
         self.write_fine((-0.5, 0.5))
-        for delay in (0.5, 2):
-            process = subprocess.Popen(self.command("-i", "in.ply", "-f", FILTER, "-p", "EdgeLength=0.003", "-o", "out.ply"),
-                                       cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(delay)
-            start = time.monotonic()
-            process.send_signal(signal.SIGINT)
-            # A signal that comes before the program's first line ends it as it ends any program.
-            self.assertIn(process.wait(timeout=60), (130, -signal.SIGINT))
-            self.assertLess(time.monotonic() - start, 5)
-            self.assertFalse(os.path.exists(self.path("out.ply")))
+        self.assert_cancels("EdgeLength=0.003", delays=(0.5, 2))
 
 
 if __name__ == "__main__":
