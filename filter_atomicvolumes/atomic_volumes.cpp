@@ -314,8 +314,11 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
                              [](Sheet::Flaw flaw) { return describe(flaw, undivided); });
   }
   clock.end_of("dividing space and cutting");
-  const PieceFinisher finisher(mesh_, topology_, input_, divided(),
-                               {options_.remesh, options_.fairing, options_.edge_length});
+  FinishingOptions finishing;
+  finishing.remesh = options_.remesh;
+  finishing.fairing = options_.fairing;
+  finishing.edge_length = options_.edge_length;
+  const PieceFinisher finisher(mesh_, topology_, input_, divided(), finishing);
   finisher.finish(pieces_, 0, progress.part(0.4, 0.8, "fairing the patches"));
   clock.end_of("fairing the patches");
   finisher.separate(pieces_, progress.part(0.8, 0.85, "comparing the patches"));

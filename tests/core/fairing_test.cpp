@@ -427,7 +427,9 @@ TEST(Fairing, LoweringMovesNoVertexFartherThanAllowed) {
     double longest = 0;
     for (Index v = 0; v < c.surface.vertices.size(); ++v) {
       const double move = (c.surface.vertices[v] - before.surface.vertices[v]).norm();
-      if (c.fixed[v]) EXPECT_EQ(move, 0);
+      if (c.fixed[v]) {
+        EXPECT_EQ(move, 0);
+      }
       longest = std::max(longest, move);
     }
     EXPECT_LE(longest, share * box.diagonal().norm() * (1 + 1e-9));
