@@ -5,28 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <utility>
 #include <vector>
 
 #include "filter_atomicvolumes/labelling.h"
+#include "tests/poissoncompletion/oracles.h"
 #include "tests/support/volumes.h"
 
 namespace meshcomplete {
 namespace {
 
-/// A function whose zero set is known.
-class Function : public ImplicitFunction {
- public:
-  explicit Function(std::function<double(const Vector3&)> value) : value_(std::move(value)) {}
-  double value(const Vector3& position) const override { return value_(position); }
-
- private:
-  std::function<double(const Vector3&)> value_;
-};
+using test::Oracle;
 
 TEST(FaceCost, OnlyTheWeightThatAsksForAnOracleHasOne) {
-  const Function plane([](const Vector3& p) { return p.x(); });
+  const Oracle plane([](const Vector3& p) { return p.x(); });
   for (CutWeight weight : {CutWeight::area, CutWeight::balanced, CutWeight::unit})
     EXPECT_EQ(FaceCost(weight, &plane).closeness({0, 0, 0}, 1), 1);
   EXPECT_EQ(FaceCost(CutWeight::poisson).closeness({0, 0, 0}, 1), 1) << "without one it is the area";
@@ -37,7 +28,7 @@ TEST(FaceCost, OnlyTheWeightThatAsksForAnOracleHasOne) {
 // The distance is the function's value over its slope: how steep it is does not matter, nor where it is.
 TEST(FaceCost, GrowsWithTheDistanceFromTheZeroSet) {
   for (double slope : {1e-3, 1.0, 1e3}) {
-    const Function plane([=](const Vector3& p) { return slope * (0.6 * p.x() + 0.8 * p.y() - 2); });
+    const Oracle plane([=](const Vector3& p) { return slope * (0.6 * p.x() + 0.8 * p.y() - 2); });
     const FaceCost cost(CutWeight::poisson, &plane);
     const auto at = [&](double distance, double size) {
       return cost.closeness((2 + distance) * Vector3(0.6, 0.8, 0) + Vector3(0, 0, 7), size);
@@ -59,7 +50,7 @@ TEST(FaceCost, GrowsWithTheDistanceFromTheZeroSet) {
 
 TEST(FaceCost, WhereTheFunctionIsConstantNothingIsNear) {
   for (double value : {-0.5, 0.0, 0.5}) {
-    const Function constant([=](const Vector3&) { return value; });
+    const Oracle constant([=](const Vector3&) { return value; });
     EXPECT_EQ(FaceCost(CutWeight::poisson, &constant).closeness({1, 2, 3}, 0.5), 1);
   }
 }
@@ -76,8 +67,8 @@ TEST(FaceCost, TheCutFollowsTheOracle) {
   const auto joins = [&](const FaceCost& cost) {
     return cut_complex(mesh, division->complex, cost, {}).is_inside(middle);
   };
-  const Function ball([](const Vector3& p) { return p.norm() - 1; });
-  const Function lids([](const Vector3& p) { return std::max(p.norm() - 1, 0.6 - std::abs(p.z())); });
+  const Oracle ball([](const Vector3& p) { return p.norm() - 1; });
+  const Oracle lids([](const Vector3& p) { return std::max(p.norm() - 1, 0.6 - std::abs(p.z())); });
   EXPECT_TRUE(joins({CutWeight::poisson, &ball}));
   EXPECT_FALSE(joins({CutWeight::poisson, &lids}));
   EXPECT_FALSE(joins(CutWeight::area)) << "the caps' discs have less area than the band between them";
@@ -85,7 +76,7 @@ TEST(FaceCost, TheCutFollowsTheOracle) {
 }
 
 TEST(FaceCost, MeasuresAreThoseOfTheCut) {
-  const Function ball([](const Vector3& p) { return p.norm() - 1; });
+  const Oracle ball([](const Vector3& p) { return p.norm() - 1; });
   const test::PlacedMesh placed(test::sphere_with_hole(2, 0.7), 2);
   const auto division = test::divide(placed);
   ASSERT_TRUE(division);

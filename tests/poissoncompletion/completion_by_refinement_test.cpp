@@ -82,13 +82,6 @@ Completed complete(const TriangleMesh& mesh, const ImplicitFunction& oracle,
   return run;
 }
 
-double mean_edge(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles) {
-  double sum = 0;
-  for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) sum += (vertices[t[k]] - vertices[t[(k + 1) % 3]]).norm();
-  return sum / (3.0 * static_cast<double>(triangles.size()));
-}
-
 // The upper half of a ball, open below, whose oracle knows that the bottom is flat. From its rim alone it
 // could as well go on as a ball.
 TEST(CompletionByRefinement, FairingKeepsAFlatBottomAboutFlat) {
@@ -133,8 +126,8 @@ TEST(CompletionByRefinement, PatchesAreLikeTheMeshAndOnTheSurface) {
     options.finishing.fairing.reset();
     const Patch patch = complete(one.mesh, one.oracle, options).result.completion.patch;
     const TriangleMesh whole = test::with_patch(one.mesh, patch);
-    const double length = mean_edge(one.mesh.vertices, one.mesh.triangles);
-    EXPECT_NEAR(mean_edge(whole.vertices, patch.triangles), length, 0.2 * length);
+    const double length = test::mean_edge(one.mesh.vertices, one.mesh.triangles);
+    EXPECT_NEAR(test::mean_edge(whole.vertices, patch.triangles), length, 0.2 * length);
     std::size_t small = 0, inner = 0;
     for (const Triangle& t : patch.triangles) {
       const Vector3 &a = whole.vertices[t[0]], &b = whole.vertices[t[1]], &c = whole.vertices[t[2]];
@@ -155,7 +148,7 @@ TEST(CompletionByRefinement, WhatIsCutOutMeetsNothing) {
     const MeshTopology topology = build_topology(one.mesh);
     const std::vector<BoundaryLoop> loops = trace_boundary_loops(one.mesh, topology);
     const TriangleBlocks blocks(one.mesh);
-    const double length = mean_edge(one.mesh.vertices, one.mesh.triangles);
+    const double length = test::mean_edge(one.mesh.vertices, one.mesh.triangles);
     const InitialPoints points = choose_initial_points(
         one.mesh, topology, test::pointers(loops), 2, [=](const Vector3&) { return 2.5 * length; }, blocks,
         0.05);
@@ -211,7 +204,7 @@ TEST(CompletionByRefinement, AGivenEdgeLengthIsAsGoodAsTheRims) {
   const TriangleMesh mesh = test::sphere_with_hole(5, 0.6);
   RefinedCompletionOptions options;
   const RefinedCompletionFigures own = complete(mesh, test::sphere_oracle(), options).result.figures;
-  options.edge_length = mean_edge(mesh.vertices, mesh.triangles);
+  options.edge_length = test::mean_edge(mesh.vertices, mesh.triangles);
   const RefinedCompletionFigures given = complete(mesh, test::sphere_oracle(), options).result.figures;
   const auto inserted = [](const RefinedCompletionFigures& figures) {
     return static_cast<double>(figures.points - figures.initial_points);
@@ -228,7 +221,7 @@ TEST(CompletionByRefinement, GivenEdgeLength) {
   std::vector<Triangle> inner;
   for (const Triangle& t : patch.triangles)
     if (std::min({t[0], t[1], t[2]}) >= patch.input_vertices) inner.push_back(t);
-  EXPECT_NEAR(mean_edge(whole.vertices, inner), 0.15, 0.03);
+  EXPECT_NEAR(test::mean_edge(whole.vertices, inner), 0.15, 0.03);
 }
 
 TEST(CompletionByRefinement, HolesThatAreNotAskedForStayOpen) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "common/core/closest_point.h"
 #include "common/core/implicit_function.h"
@@ -49,6 +50,14 @@ inline double distance_to(const TriangleMesh& mesh, const Vector3& p) {
         least, (closest_point(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]).position - p)
                    .norm());
   return least;
+}
+
+/// Edges of two triangles count twice.
+inline double mean_edge(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles) {
+  double sum = 0;
+  for (const Triangle& t : triangles)
+    for (int k = 0; k < 3; ++k) sum += (vertices[t[k]] - vertices[t[(k + 1) % 3]]).norm();
+  return sum / (3.0 * static_cast<double>(triangles.size()));
 }
 
 /// The smallest angle of a triangle, in degrees.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/core/error.h"
+#include "tests/poissoncompletion/oracles.h"
 #include "tests/support/cancelling.h"
 #include "tests/support/complexes.h"
 #include "tests/support/meshes.h"
@@ -23,13 +24,6 @@ PoissonCompletionResult complete(const TriangleMesh& mesh, const PoissonCompleti
 
 /// A sphere without a cap, small enough to be completed often.
 TriangleMesh holed() { return test::sphere_with_hole(3, 0.6); }
-
-double mean_edge(const TriangleMesh& mesh, const std::vector<Triangle>& triangles) {
-  double sum = 0;
-  for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) sum += (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm();
-  return sum / (3.0 * static_cast<double>(triangles.size()));
-}
 
 /// How far the patch reaches beyond a height.
 double top(const Patch& patch) {
@@ -123,7 +117,7 @@ TEST(PoissonCompletion, AnEdgeLengthIsKeptTo) {
     const PoissonCompletionResult result = complete(mesh, options);
     expect_closed(mesh, result);
     const TriangleMesh whole = test::with_patch(mesh, result.completion.patch);
-    EXPECT_NEAR(mean_edge(whole, result.completion.patch.triangles), length, 0.3 * length);
+    EXPECT_NEAR(test::mean_edge(whole.vertices, result.completion.patch.triangles), length, 0.3 * length);
   }
 }
 

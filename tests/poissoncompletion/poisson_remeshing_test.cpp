@@ -27,13 +27,6 @@ PoissonRemeshingOptions coarse() {
 
 OrientedSurfaces surface_of(const TriangleMesh& mesh) { return {{mesh}, {}, {}}; }
 
-double mean_edge(const TriangleMesh& mesh) {
-  double sum = 0;
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) sum += (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm();
-  return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
-}
-
 /// How far the middles of triangles are from a sphere of radius 1, at most.
 double deviation(const TriangleMesh& mesh) {
   double most = 0;
@@ -98,7 +91,7 @@ TEST(PoissonRemeshing, EdgesOfOneLength) {
   for (double length : {0.3, 0.15}) {
     options.edge_length = length;
     const TriangleMesh mesh = remesh_by_poisson(surface_of(test::icosphere(3)), options).mesh;
-    EXPECT_NEAR(mean_edge(mesh), length, 0.25 * length);
+    EXPECT_NEAR(test::mean_edge(mesh.vertices, mesh.triangles), length, 0.25 * length);
     for (const Triangle& t : mesh.triangles)
       EXPECT_GT(test::smallest_angle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]), 24.9);
   }

@@ -1,11 +1,10 @@
-#include "filter_poissoncompletion/poisson_remeshing.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "common/core/error.h"
 #include "common/core/mesh_statistics.h"
+#include "filter_poissoncompletion/poisson_remeshing.h"
 #include "tests/support/meshes.h"
 
 namespace meshcomplete {

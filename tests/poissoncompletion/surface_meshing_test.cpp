@@ -28,13 +28,6 @@ SurfaceMeshingOptions uniform(double length) {
   return options;
 }
 
-double mean_edge(const TriangleMesh& mesh) {
-  double sum = 0;
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) sum += (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm();
-  return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
-}
-
 void expect_good(const TriangleMesh& mesh, const Oracle& oracle, double length, double deviation) {
   for (const Vector3& v : mesh.vertices) {
     EXPECT_EQ(as_stored(v), v);
@@ -46,7 +39,7 @@ void expect_good(const TriangleMesh& mesh, const Oracle& oracle, double length, 
     EXPECT_LT(std::abs(oracle.value((a + b + c) / 3)), deviation);
   }
   EXPECT_EQ(improper_pairs(test::corners_of(mesh)).size(), 0u);
-  EXPECT_NEAR(mean_edge(mesh), length, 0.2 * length);
+  EXPECT_NEAR(test::mean_edge(mesh.vertices, mesh.triangles), length, 0.2 * length);
 }
 
 TEST(SurfaceMeshing, Sphere) {
