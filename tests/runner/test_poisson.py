@@ -92,6 +92,16 @@ class Holes(Case):
         self.assert_closed()
         self.assertEqual([len(hole["loops"]) for hole in self.read_report()["holes"]], [2])
 
+    def test_one_of_the_two_rims_of_a_gap(self):
+        before = self.write_fine((-0.15, 0.15))
+        self.check(3, "-i", "in.ply", "-f", "Conditional Vertex Selection", "-p", "condSelect=(z > 0)", "-f", FILTER,
+                   "-p", "Selected=true", "-o", "out.ply", "--report", "report.json")
+        after = Ply(self.path("out.ply"))
+        self.assertEqual((bits(after.points), after.triangles), (bits(before.points), before.triangles))
+        reasons = {hole["outcome"]: hole["reason"] for hole in self.read_report()["holes"]}
+        self.assertEqual(reasons["skipped"], "not selected")
+        self.assertIn("or close the holes beside it, too", reasons["failed"])
+
     def test_parts_of_unlike_density(self):
         coarse = sphere(rings=12, segments=16, hole=False)
         low, high = without(*self.fine, [(-0.2, 1.1)]), without(*coarse, [(-1.1, 0.3)])
