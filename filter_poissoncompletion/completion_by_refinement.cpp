@@ -39,14 +39,6 @@ const char* const not_separated =
     "the reconstructed surface does not separate this hole from the rest of the mesh; where its "
     "boundary is noisy, try 1 or more for 'RemoveRings'";
 
-// Another rim of the same hole may be one of those that stay open.
-std::string not_separated_here(const std::vector<HoleReport>& holes) {
-  const bool any_left = std::any_of(holes.begin(), holes.end(), [](const HoleReport& hole) {
-    return hole.outcome == HoleOutcome::skipped;
-  });
-  return std::string(not_separated) + (any_left ? ", or close the holes beside it, too" : "");
-}
-
 class Run {
  public:
   Run(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<BoundaryLoop>& loops,
@@ -169,7 +161,8 @@ RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTop
   if (std::any_of(report.holes.begin(), report.holes.end(), is_targeted)) {
     Run run(mesh, topology, loops, merged.get(), input, function, options, report);
     pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));
-    const std::string open = not_separated_here(report.holes);
+    const std::string open = std::string(not_separated) +
+                             (any_left_open(report.holes) ? ", or close the holes beside it, too" : "");
     choose_pieces(pieces, loops, report.holes, [&](Sheet::Flaw flaw) { return describe(flaw, open); });
     if (options.stretches) keep_pieces_at(*options.stretches, pieces, report.holes);
     StageClock clock(report);

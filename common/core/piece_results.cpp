@@ -41,6 +41,11 @@ HoleReport& merge_holes(const std::vector<std::size_t>& loops, std::vector<HoleR
 
 }  // namespace
 
+bool any_left_open(const std::vector<HoleReport>& holes) {
+  return std::any_of(holes.begin(), holes.end(),
+                     [](const HoleReport& hole) { return hole.outcome == HoleOutcome::skipped; });
+}
+
 std::string describe(Sheet::Flaw flaw, const std::string& open) {
   switch (flaw) {
     case Sheet::Flaw::none:
@@ -102,9 +107,12 @@ Completion gather_pieces(const TriangleMesh& mesh, const std::vector<PatchPiece>
       append(result.patch, pieces[i].patch);
     }
   }
+  const char* const unreached = any_left_open(report.holes)
+                                    ? "no patch reaches this rim; close the holes beside it, too"
+                                    : "no patch reaches this rim";
   for (std::size_t i = 0; i < report.holes.size(); ++i) {
     HoleReport& hole = report.holes[i];
-    if (hole.outcome == HoleOutcome::failed && hole.reason.empty()) hole.reason = "no patch reaches this rim";
+    if (hole.outcome == HoleOutcome::failed && hole.reason.empty()) hole.reason = unreached;
     if (!merged[i]) holes.push_back(std::move(hole));
   }
   report.holes = std::move(holes);

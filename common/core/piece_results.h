@@ -12,6 +12,9 @@
 
 namespace meshcomplete {
 
+/// Whether some hole is to stay open: it may be another rim of one that cannot be closed without it.
+bool any_left_open(const std::vector<HoleReport>& holes);
+
 /// What a user is told of a flaw. Why a sheet is open only the filter knows: that is `open`.
 std::string describe(Sheet::Flaw flaw, const std::string& open);
 
@@ -24,7 +27,8 @@ std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vect
                                 const std::function<std::string(Sheet::Flaw)>& describe_flaw);
 
 /// The patches of the wanted pieces, and the report with one hole for each group of loops that are closed
-/// together. A targeted hole without a piece or reason gets "no patch reaches this rim". Cost: O(patch).
+/// together. A targeted hole without a piece or reason gets "no patch reaches this rim" as its reason. Cost:
+/// O(patch).
 Completion gather_pieces(const TriangleMesh& mesh, const std::vector<PatchPiece>& pieces,
                          CompletionReport report);
 
