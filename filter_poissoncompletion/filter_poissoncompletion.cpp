@@ -133,8 +133,8 @@ FilterDeclaration closing_filter() {
   filter.parameters = close_holes_parameters();
   const ParameterDeclaration max_depth =
       integer_parameter("MaxDepth", "Maximum depth",
-                        "Near the holes it is halved until cubes are as small as the edges there, and as a "
-                        "third of thin walls; but at most so often, up to 16. 0: 14 times.",
+                        "Near the holes it is halved until cubes are as small as the edges there, and as "
+                        "thin walls are thick; but at most so often, up to 16. 0: 14 times.",
                         "levels", 0, 0, 16);
   for (const auto& more : {guide_parameters(), oracle_parameters(max_depth, 2.2), refinement_parameters()})
     filter.parameters.insert(filter.parameters.end(), more.begin(), more.end());

@@ -10,8 +10,10 @@
 namespace meshcomplete {
 namespace {
 
-// Cubes of the octree from one side of a wall to the other: with fewer its two sides run into one.
-constexpr double cubes_in_wall = 3;
+// Where walls are thinner than edges, cubes are as small as they are thick, but for so much: with larger ones
+// the two sides run into one. Still smaller ones make the seams no better, and where a wall thins out, as at
+// the edges of wings, they follow its noise.
+constexpr double smallest_in_wall = 0.5;
 // Thinner walls than this part of an edge are taken for flaws of the scan.
 constexpr double thinnest_wall = 0.25;
 
@@ -29,9 +31,9 @@ EdgeLengthField resolution(const TriangleMesh& mesh, const OpenMesh& open, const
       const Triangle& t = mesh.triangles[loop->faces[k]];
       const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
       const Vector3 normal = (b - a).cross(c - a).normalized();
-      const auto wall = wall_thickness(input.blocks(), (a + b + c) / 3, normal, thinnest_wall * lengths[k],
-                                       cubes_in_wall * lengths[k]);
-      if (wall) lengths[k] = *wall / cubes_in_wall;
+      const auto wall =
+          wall_thickness(input.blocks(), (a + b + c) / 3, normal, thinnest_wall * lengths[k], lengths[k]);
+      if (wall) lengths[k] = std::max(*wall, smallest_in_wall * lengths[k]);
     }
     const std::vector<RimSample> more = smoothed_samples(rim.positions, lengths);
     samples.insert(samples.end(), more.begin(), more.end());
