@@ -310,8 +310,7 @@ AtomicVolumesFigures Run::close(const Progress& progress) {
          {constraints.notes(), solution.notes, describe_bubbles(sheets, options_.constraints)})
       report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
     pieces_ = make_pieces(std::move(sheets), topology_, loop_numbers_);
-    blocked_ = choose_pieces(pieces_, loops_, report_.holes,
-                             [](Sheet::Flaw flaw) { return describe(flaw, undivided); });
+    blocked_ = choose_pieces(pieces_, loops_, report_.holes, undivided);
   }
   clock.end_of("dividing space and cutting");
   FinishingOptions finishing;

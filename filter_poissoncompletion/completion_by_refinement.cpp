@@ -163,7 +163,7 @@ RefinedCompletion complete_by_refinement(const TriangleMesh& mesh, const MeshTop
     pieces = run.pieces(result.figures, progress.part(0, 0.7, "refining the surface"));
     const std::string open = std::string(not_separated) +
                              (any_left_open(report.holes) ? ", or close the holes beside it, too" : "");
-    choose_pieces(pieces, loops, report.holes, [&](Sheet::Flaw flaw) { return describe(flaw, open); });
+    choose_pieces(pieces, loops, report.holes, open);
     if (options.stretches) keep_pieces_at(*options.stretches, pieces, report.holes);
     StageClock clock(report);
     FinishingOptions finishing = options.finishing;

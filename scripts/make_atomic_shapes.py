@@ -17,6 +17,9 @@ unlike-halves    the lower half of a sphere in small triangles and a cap of it i
 import math
 import sys
 
+sys.dont_write_bytecode = True  # the checkout stays as it is
+from mesh_shapes import kept, read_off, together  # noqa: E402
+
 AROUND = 96  # vertices round the axis
 
 
@@ -39,14 +42,6 @@ def arc(first, last, steps, radius=1.0, centre=0.0):
     """Part of a circle, as a profile: angles in degrees, 0 at the top, growing away from the axis."""
     angles = [math.radians(first + (last - first) * i / steps) for i in range(steps + 1)]
     return [(centre + radius * math.sin(a), radius * math.cos(a)) for a in angles]
-
-
-def together(*meshes):
-    points, faces = [], []
-    for more_points, more_faces in meshes:
-        faces += [tuple(v + len(points) for v in t) for t in more_faces]
-        points += more_points
-    return points, faces
 
 
 def with_pole(mesh, around=AROUND):
@@ -97,15 +92,8 @@ def unlike_halves():
 
 
 def without_slab(path, axis, low, high):
-    lines = open(path).read().split("\n")
-    vertices, triangles = (int(word) for word in lines[1].split()[:2])
-    rows = [line.split() for line in lines[2:] if line.strip()]
-    points = [tuple(float(word) for word in row[:3]) for row in rows[:vertices]]
-    faces = [tuple(int(word) for word in row[1:4]) for row in rows[vertices : vertices + triangles]]
     k = "xyz".index(axis)
-    faces = [t for t in faces if not low < sum(points[v][k] for v in t) / 3 < high]
-    number = {v: i for i, v in enumerate(sorted({v for t in faces for v in t}))}
-    return [points[v] for v in number], [tuple(number[v] for v in t) for t in faces]
+    return kept(read_off(path), lambda centre: not low < centre[k] < high)
 
 
 SHAPES = {

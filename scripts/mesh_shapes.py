@@ -1,5 +1,6 @@
 """What the scripts share that make meshes: reading and writing OFF files, taking faces away, moving, putting together."""
 
+import collections
 import math
 
 
@@ -85,14 +86,7 @@ def several_fans(faces):
     """Vertices with more than two rim edges: faces meet there in the vertex only."""
     directed = {(a, b) for t in faces for a, b in zip(t, t[1:] + t[:1])}
     rim = [a for a, b in directed if (b, a) not in directed]
-    return {v for v in rim if rim.count(v) > 1} if len(rim) < 50 else repeated(rim)
-
-
-def repeated(values):
-    seen, twice = set(), set()
-    for value in values:
-        (twice if value in seen else seen).add(value)
-    return twice
+    return {v for v, count in collections.Counter(rim).items() if count > 1}
 
 
 def dot(a, b):

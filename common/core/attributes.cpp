@@ -185,12 +185,9 @@ Eigen::MatrixXd interpolate_attributes(const TriangleMesh& mesh, const Patch& pa
 }
 
 std::vector<Vector3> patch_vertex_normals(const TriangleMesh& mesh, const Patch& patch) {
-  const auto position = [&](Index v) {
-    return v < patch.input_vertices ? mesh.vertices[v] : patch.vertices[v - patch.input_vertices];
-  };
   std::vector<Vector3> normals(patch.vertices.size(), Vector3::Zero()), any = normals;
   for (const Triangle& t : patch.triangles) {
-    const Vector3 p[3] = {position(t[0]), position(t[1]), position(t[2])};
+    const std::array<Vector3, 3> p = corners(mesh, patch, t);
     const Vector3 across = (p[1] - p[0]).cross(p[2] - p[0]);
     const double length = across.norm();
     if (!(length > 0)) continue;

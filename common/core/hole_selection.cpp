@@ -80,7 +80,7 @@ std::vector<HoleReport> select_holes(const TriangleMesh& mesh, const std::vector
     const auto& vertices = loops[i].vertices;
     if (options.selected_only &&
         std::none_of(vertices.begin(), vertices.end(), [&](Index v) { return touched[v] != 0; }))
-      hole.reason = "not selected";
+      hole.reason = not_selected;
     else if (options.max_edges && hole.edges > *options.max_edges)
       hole.reason = "more than " + std::to_string(*options.max_edges) + " edges";
     else if (options.max_perimeter && hole.perimeter > *options.max_perimeter)

@@ -25,6 +25,9 @@ struct HoleSelectionOptions {
   bool keep_largest = false;             ///< leave the loop with the greatest perimeter open
 };
 
+/// The reason of holes that the selection leaves out.
+inline constexpr const char* not_selected = "not selected";
+
 /// For every vertex, whether it is selected or a corner of a selected face. Cost: O(vertices + faces).
 std::vector<char> touched_vertices(const TriangleMesh& mesh, const MeshSelection& selection);
 

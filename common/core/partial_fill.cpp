@@ -15,8 +15,6 @@ constexpr std::size_t most_interrupted = 6;
 // Shorter ones are left out where their loop has longer ones.
 constexpr std::size_t shortest_stretch = 3;
 
-constexpr const char* not_selected = "not selected";
-
 using Bounds = Eigen::AlignedBox3d;
 
 Bounds bounds_of(const TriangleMesh& mesh, const BoundaryLoop& loop) {

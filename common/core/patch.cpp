@@ -11,11 +11,14 @@ double stored_resolution(const Vector3& position) {
   return position.cwiseAbs().maxCoeff() * std::numeric_limits<float>::epsilon();
 }
 
+const Vector3& position(const TriangleMesh& mesh, const Patch& patch, Index vertex) {
+  return vertex < patch.input_vertices ? mesh.vertices[vertex]
+                                       : patch.vertices[vertex - patch.input_vertices];
+}
+
 std::array<Vector3, 3> corners(const TriangleMesh& mesh, const Patch& patch, const Triangle& triangle) {
-  const auto at = [&](Index v) {
-    return v < patch.input_vertices ? mesh.vertices[v] : patch.vertices[v - patch.input_vertices];
-  };
-  return {at(triangle[0]), at(triangle[1]), at(triangle[2])};
+  return {position(mesh, patch, triangle[0]), position(mesh, patch, triangle[1]),
+          position(mesh, patch, triangle[2])};
 }
 
 void append(Patch& patch, const Patch& other) {

@@ -29,6 +29,9 @@ Vector3 as_stored(const Vector3& position);
 /// more.
 double stored_resolution(const Vector3& position);
 
+/// Where a vertex of `patch`, which belongs to `mesh`, is: a corner's number as its triangles have it.
+const Vector3& position(const TriangleMesh& mesh, const Patch& patch, Index vertex);
+
 /// Positions of the corners of a triangle of `patch`, which belongs to `mesh`.
 std::array<Vector3, 3> corners(const TriangleMesh& mesh, const Patch& patch, const Triangle& triangle);
 

@@ -24,8 +24,7 @@ std::vector<Vector3> geodesic(const TriangleMesh& mesh, const Patch& patch,
   const auto vertex = [&](Index v) {
     const auto [found, fresh] = number.try_emplace(v);
     if (fresh) {
-      const Vector3& p =
-          v < patch.input_vertices ? mesh.vertices[v] : patch.vertices[v - patch.input_vertices];
+      const Vector3& p = position(mesh, patch, v);
       found->second = surface.add_vertex({p.x(), p.y(), p.z()});
     }
     return found->second;

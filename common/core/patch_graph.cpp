@@ -57,9 +57,4 @@ PatchPaths PatchGraph::paths_from(const std::vector<std::pair<Index, double>>& s
   return paths;
 }
 
-Vector3 PatchGraph::position(Index vertex) const {
-  return vertex < patch_.input_vertices ? mesh_.vertices[vertex]
-                                        : patch_.vertices[vertex - patch_.input_vertices];
-}
-
 }  // namespace meshcomplete

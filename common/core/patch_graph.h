@@ -40,7 +40,7 @@ class PatchGraph {
   Index face(Index from, Index to) const { return face_.at(key(from, to)); }
   /// The triangle beyond a side of another one; as many as there are triangles at the patch's boundary.
   Index beyond(Index triangle, int side) const;
-  Vector3 position(Index vertex) const;
+  const Vector3& position(Index vertex) const { return meshcomplete::position(mesh_, patch_, vertex); }
 
   /// What it costs to go along an edge, at least 0.
   using Price = std::function<double(Index from, Index to)>;

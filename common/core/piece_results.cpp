@@ -60,8 +60,7 @@ std::string describe(Sheet::Flaw flaw, const std::string& open) {
 }
 
 std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vector<BoundaryLoop>& loops,
-                                std::vector<HoleReport>& holes,
-                                const std::function<std::string(Sheet::Flaw)>& describe_flaw) {
+                                std::vector<HoleReport>& holes, const std::string& open) {
   std::vector<char> blocked(loops.size(), 0);
   std::map<std::size_t, std::string> reasons;
   for (const std::vector<std::size_t>& group : group_by_loops(pieces)) {
@@ -71,7 +70,7 @@ std::vector<char> choose_pieces(std::vector<PatchPiece>& pieces, const std::vect
       continue;
     std::string reason = obstacle(group_loops, loops, holes);
     for (std::size_t loop : group_loops) blocked[loop] = !reason.empty() && is_targeted(holes[loop]);
-    if (reason.empty()) reason = describe_flaw(flaw_of(pieces, group, loops));
+    if (reason.empty()) reason = describe(flaw_of(pieces, group, loops), open);
     for (std::size_t i : group) pieces[i].wanted = reason.empty();
     for (std::size_t loop : group_loops)
       if (!reason.empty()) reasons[loop] = reason;

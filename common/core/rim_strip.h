@@ -13,7 +13,8 @@
 namespace meshcomplete {
 
 /// Edges of a boundary loop one after the other: from `vertices[first]` to `vertices[first + edges]`
-/// (cyclic). With as many edges as the loop has it is the whole loop.
+/// (cyclic). With as many edges as the loop has it is the whole loop. Between
+/// two stretches of a loop there is at least one edge of neither.
 struct RimStretch {
   std::size_t loop = 0, first = 0, edges = 0;
 };

@@ -109,9 +109,7 @@ class Interpolation {
   std::size_t component(Index vertex) const { return component_[static_cast<std::size_t>(local(vertex))]; }
   Index start(std::size_t half_edge) const { return patch_.triangles[half_edge / 3][half_edge % 3]; }
   Index end(std::size_t half_edge) const { return patch_.triangles[half_edge / 3][(half_edge + 1) % 3]; }
-  Vector3 position(Index v) const {
-    return v < patch_.input_vertices ? mesh_.vertices[v] : patch_.vertices[v - patch_.input_vertices];
-  }
+  const Vector3& position(Index v) const { return meshcomplete::position(mesh_, patch_, v); }
 
   const CMeshO& layer_;
   const TriangleMesh& mesh_;
