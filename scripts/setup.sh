@@ -11,9 +11,9 @@ source "$top/scripts/common.sh"
 
 build_packages=(
   g++ cmake ninja-build ccache meshlab qtbase5-dev libqt5opengl5-dev libeigen3-dev libglew-dev libgl-dev libcgal-dev
-  libtbb-dev libmaxflow-dev dpkg-dev ca-certificates xz-utils
+  libtbb-dev libmaxflow-dev libopenvdb-dev dpkg-dev ca-certificates xz-utils
 )
-test_packages=(libgtest-dev libgmock-dev python3 xvfb xauth libgl1-mesa-dri xdotool openbox imagemagick)
+test_packages=(libgtest-dev libgmock-dev libopenvdb-tools python3 xvfb xauth libgl1-mesa-dri xdotool openbox imagemagick)
 benchmark_packages=(libbenchmark-dev f3d time)
 
 installed() {

@@ -10,7 +10,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 HOST_HEADER = re.compile(
     r"^(Q[A-Z]\w*|Qt\w*/.*|vcg/.*|wrap/.*|GL/.*|common/(interfaces|meshmodel|ml_mesh_type)\.h"
     r"|.*(mlapplication|pluginmanager)\.h)$")
-THIRD_PARTY_IN_SOURCES_ONLY = re.compile(r"^(CGAL|boost|tbb|maxflow)/")
+THIRD_PARTY_IN_SOURCES_ONLY = re.compile(r"^(CGAL|boost|tbb|maxflow|openvdb)/")
+GRIDS = SOURCE / "filter_volmorph/volume_grids.h"  # for sources beside it
 
 
 def files(*folders):
@@ -70,9 +71,13 @@ class IncludesRunDownward(unittest.TestCase):
                          and not (SOURCE / name).exists(), "MeshLab's version is known in one place")
 
     def test_heavy_libraries_stay_in_sources(self):
-        headers = [path for path in files("common/core", *filter_folders()) if path.suffix == ".h"]
+        headers = [path for path in files("common/core", *filter_folders())
+                   if path.suffix == ".h" and path != GRIDS]
         self.assert_none(headers, lambda name: THIRD_PARTY_IN_SOURCES_ONLY.match(name),
                          "headers need the standard library and Eigen only")
+        users = [path for path in files("common", "tools", *filter_folders())
+                 if path.suffix == ".h" or path.parent != GRIDS.parent]
+        self.assert_none(users, lambda name: SOURCE / name == GRIDS, "it brings OpenVDB")
 
     def test_meshlab_release_is_decided_on_in_one_header(self):
         conditional = re.compile(r"^\s*#\s*(if|elif).*MESHCOMPLETE_MESHLAB", re.MULTILINE)
