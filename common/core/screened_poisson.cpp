@@ -175,15 +175,15 @@ void Solver::add_interpolated(int depth, const std::vector<Value>& coarse, std::
   });
 }
 
-// The area normals of this depth's samples, as a density at the corners: spread over the corners round them
-// and once more over the neighbours of these.
+// The area normals that are spread from this depth, as a density at the corners: spread over the corners
+// round them and once more over the neighbours of these.
 Vectors Solver::spread_normals(int depth, const Progress& progress) const {
   const Level& level = octree_->level(depth);
   Vectors density(level.corner_count, Vector3::Zero());
   const double volume = std::pow(side(depth), 3);
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     if (s % samples_per_check == 0) progress.check();
-    if (samples_[s].depth != depth) continue;
+    if (samples_[s].depth - samples_[s].coarsening != depth) continue;
     const Place place = place_of(s);
     const std::array<Index, 8> corners = octree_->corners(place.cube);
     for (int c = 0; c < 8; ++c) density[corners[c]] += place.weights[c] / volume * samples_[s].area_normal;

@@ -16,6 +16,7 @@ struct OrientedSample {
   Vector3 position = Vector3::Zero();
   Vector3 area_normal = Vector3::Zero();  ///< outward, as long as the area that it stands for
   int depth = 0;                          ///< of the octree there
+  int coarsening = 0;  ///< so many levels above `depth` its normal is spread: where samples are sparse
 };
 
 /// What the function is at the outside of the root cube.

@@ -30,8 +30,13 @@ constexpr double longest_side = 2;
 // few enough to stay on one side of the surface.
 constexpr unsigned neighbours = 10;
 
-// Points on each face of a cube at least: Kazhdan and Hoppe's samples per node for clean scans.
-constexpr double points_per_cube = 1.5;
+// Points on each face of a cube at least: with fewer, cubes follow the noise in the spacing of the points
+// (Kazhdan and Hoppe take 1.5 samples per node for clean scans).
+constexpr double points_per_cube = 2;
+
+// The same for the cubes over which normals are spread: the sum of so many is steady. With 4 smooth surfaces
+// become bumpy, with 16 small features fade.
+constexpr double normals_per_cube = 9;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -158,7 +163,9 @@ std::vector<OrientedSample> sample_points(const std::vector<Vector3>& points,
     // So many points on the disc that reaches half way beyond the last of them.
     const double area = found > 1 ? pi * reach / (static_cast<double>(found) - 0.5) : 0;
     const double cube = std::max(options.cube_size(points[point]), std::sqrt(points_per_cube * area));
-    samples[i] = {points[point], area * normals[point].normalized(), depth_of(lattice, cube, options)};
+    const int depth = depth_of(lattice, cube, options);
+    const int steady = depth_of(lattice, std::sqrt(normals_per_cube * area), options);
+    samples[i] = {points[point], area * normals[point].normalized(), depth, std::max(0, depth - steady)};
   });
   samples.erase(std::remove_if(samples.begin(), samples.end(),
                                [](const OrientedSample& s) { return s.area_normal.isZero(0); }),

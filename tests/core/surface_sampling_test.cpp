@@ -147,6 +147,24 @@ TEST(SurfaceSampling, PointSetsGetTheAreaThatTheyCover) {
   EXPECT_NEAR(lower / (2 * 3.1416), 1, 0.1);
 }
 
+// 10000 points on the unit sphere have an area of 0.00126 each: 2 of them leave cubes of 0.05, 9 of 0.106.
+TEST(SurfaceSampling, SparsePointsAskForCoarseCubesAndSpreadNormalsFurther) {
+  std::vector<Vector3> points;
+  for (int i = 0; i < 10000; ++i) {
+    const double z = 1 - 2 * (i + 0.5) / 10000, turn = 2.399963 * i;
+    points.emplace_back(std::sqrt(1 - z * z) * std::cos(turn), std::sqrt(1 - z * z) * std::sin(turn), z);
+  }
+  const Lattice root(Vector3::Constant(-2), 4);
+  const auto all = [&](double size, int depth, int coarsening) {
+    for (const OrientedSample& s : sample_points(points, points, root, cubes(size)))
+      if (s.depth != depth || s.coarsening != coarsening) return false;
+    return true;
+  };
+  EXPECT_TRUE(all(0.2, 5, 0));   // cubes of 0.125
+  EXPECT_TRUE(all(0.07, 6, 0));  // of 0.0625: the next depth at which they are no larger than 0.106
+  EXPECT_TRUE(all(0.01, 7, 1));  // of 0.031, no larger than 0.05
+}
+
 TEST(SurfaceSampling, TheRootHoldsEverythingInItsMiddle) {
   const TriangleMesh mesh = test::cube(2, {10, 0, 0});
   const Lattice lattice = root_cube({&mesh}, {{11, 1, 7}}, 1.5);
