@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/core/graph_cut.h"
+#include "common/core/threads.h"
 #include "filter_poissoncompletion/surplus_facets.h"
 
 namespace meshcomplete {
@@ -21,11 +22,40 @@ constexpr double unlikeness = 0.3;
 // The sum of all prices in the graph's units: far from its limit, and fine enough for every facet.
 constexpr double total_price = 1e12;
 
+constexpr std::size_t grain = 4096;  // cells or vertices in one go of a thread
+
 // Where a vertex is: far out, a vertex of the mesh, on an inner edge, a vertex of a rim, on a rim's edge, or
 // on the surface alone. Patches have corners at the last three.
 enum class Place : char { elsewhere, mesh, mesh_edge, rim, rim_edge, fresh };
 
 enum Side : char { free = 0, inside = 1, outside = 2, both = 3, unknown = 4 };
+
+// The cells round one vertex that lie on a known side of the mesh's faces there.
+class StarFlood {
+ public:
+  StarFlood(const DelaunayComplex& complex, const std::vector<char>& input_facets,
+            const std::vector<char>& side)
+      : complex_(complex), input_facets_(input_facets), side_(side), found_(complex.cells.size(), unknown) {}
+
+  /// Only when it leads to no contradiction: there is one when faces are missing. `visit(cell, side)` is
+  /// called for every cell.
+  template <class Visit>
+  void run(Index vertex, const Index* star, const Index* star_end, const Visit& visit) {
+    if (flood(vertex, star, star_end))
+      for (Index cell : open_) visit(cell, found_[cell]);
+    for (Index cell : open_) found_[cell] = unknown;
+  }
+
+ private:
+  bool flood(Index vertex, const Index* star, const Index* star_end);
+  bool is_input(Index cell, int k) const { return input_facets_[cell] >> k & 1; }
+
+  const DelaunayComplex& complex_;
+  const std::vector<char>& input_facets_;
+  const std::vector<char>& side_;
+  std::vector<char> found_;  // of each cell: its side in the star that is flooded, or `unknown`
+  std::vector<Index> open_;  // the cells of that star whose side was found
+};
 
 class Tailor {
  public:
@@ -37,16 +67,17 @@ class Tailor {
  private:
   void place_vertices();
   void index_faces();
-  void match_facets();
+  void match_facets(const Progress& progress);
   Index face_at(const Triangle& facet) const;
   Index divided_face_at(const Triangle& facet) const;
   int sides_of(Index vertex, Index face) const;
   bool is_part(const Triangle& facet, Index face) const;
   void match(Index cell, int k, Index face);
-  void flood_stars();
-  bool flood(Index vertex, const Index* star, const Index* star_end);
+  void flood_stars(const Progress& progress);
   void cut(const Progress& progress);
   double area(Index cell, int k) const;
+  bool is_near(Index cell) const;
+  std::vector<std::array<double, 4>> areas(const std::vector<Index>& cells, const Progress& progress) const;
   bool is_input(Index cell, int k) const { return input_facets_[cell] >> k & 1; }
   SeparatingSurface extract() const;
 
@@ -59,8 +90,6 @@ class Tailor {
   std::vector<Index> faces_;        // ring faces at each vertex, ascending
   std::vector<char> input_facets_;  // of each cell: bit k, that facet k is part of a ring face
   std::vector<char> side_;          // that the ring has a cell on
-  std::vector<char> found_;         // of each cell: its side in the star that is flooded, or `unknown`
-  std::vector<Index> open_;         // the cells of that star whose side was found
   std::vector<char> label_;         // inside
 };
 
@@ -165,22 +194,29 @@ void Tailor::match(Index cell, int k, Index face) {
   input_facets_[cell] |= static_cast<char>(1 << k);
 }
 
-void Tailor::match_facets() {
+void Tailor::match_facets(const Progress& progress) {
   side_.assign(complex_.cells.size(), free);
   input_facets_.assign(complex_.cells.size(), 0);
-  std::vector<char> met(in_.mesh.triangles.size(), 0);
-  for (Index cell = 0; cell < complex_.cells.size(); ++cell)
-    for (int k = 0; k < 4; ++k) {
-      const Index face = face_at(facet_towards_corner(complex_.cells[cell], k));
-      if (face == none) continue;
-      match(cell, k, face);
-      figures_.faces_met += !met[face];
-      met[face] = 1;
+  std::vector<std::vector<Index>> met(complex_.cells.size() / grain + 1);
+  for_ranges(complex_.cells.size(), grain, progress, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t cell = begin; cell < end; ++cell)
+      for (int k = 0; k < 4; ++k) {
+        const Index face = face_at(facet_towards_corner(complex_.cells[cell], k));
+        if (face == none) continue;
+        match(static_cast<Index>(cell), k, face);
+        met[begin / grain].push_back(face);
+      }
+  });
+  std::vector<char> counted(in_.mesh.triangles.size(), 0);
+  for (const std::vector<Index>& faces : met)
+    for (Index face : faces) {
+      figures_.faces_met += !counted[face];
+      counted[face] = 1;
     }
 }
 
 // Where all faces round a vertex of the ring are there, every cell at it is on one side of them.
-void Tailor::flood_stars() {
+void Tailor::flood_stars(const Progress& progress) {
   std::vector<Index> first(complex_.vertices.size() + 1, 0), cells;
   const auto counts = [&](Index v) { return place_[v] == Place::mesh || place_[v] == Place::mesh_edge; };
   for (const auto& cell : complex_.cells)
@@ -191,22 +227,24 @@ void Tailor::flood_stars() {
   for (Index c = 0; c < complex_.cells.size(); ++c)
     for (Index v : complex_.cells[c])
       if (counts(v)) cells[filled[v]++] = c;
-  found_.assign(complex_.cells.size(), unknown);
-  for (Index v = 0; v < complex_.vertices.size(); ++v) {
-    if (first[v + 1] == first[v]) continue;
-    if (flood(v, cells.data() + first[v], cells.data() + first[v + 1]))
-      for (Index cell : open_) side_[cell] |= found_[cell];
-    for (Index cell : open_) found_[cell] = unknown;
-  }
+  const std::size_t vertices = complex_.vertices.size();
+  std::vector<std::vector<std::pair<Index, char>>> sides(vertices / grain + 1);
+  for_ranges(vertices, grain, progress, [&](std::size_t begin, std::size_t end) {
+    if (first[begin] == first[end]) return;
+    StarFlood flood(complex_, input_facets_, side_);
+    for (std::size_t v = begin; v < end; ++v)
+      flood.run(static_cast<Index>(v), cells.data() + first[v], cells.data() + first[v + 1],
+                [&](Index cell, char side) { sides[begin / grain].emplace_back(cell, side); });
+  });
+  for (const auto& range : sides)
+    for (const auto& [cell, side] : range) side_[cell] |= side;
 }
 
-// Only when it leads to no contradiction: there is one when faces are missing.
-bool Tailor::flood(Index vertex, const Index* star, const Index* star_end) {
+bool StarFlood::flood(Index vertex, const Index* star, const Index* star_end) {
   open_.clear();
   for (; star != star_end; ++star)
     for (int k = 0; k < 4; ++k)
       if (complex_.cells[*star][k] != vertex && is_input(*star, k) && found_[*star] == unknown) {
-        // What other faces say of the cell does not matter here.
         found_[*star] = side_[*star];
         open_.push_back(*star);
       }
@@ -234,42 +272,56 @@ double Tailor::area(Index cell, int k) const {
   return 0.5 * (complex_.vertices[t[1]] - p).cross(complex_.vertices[t[2]] - p).norm();
 }
 
+bool Tailor::is_near(Index cell) const {
+  const DelaunayComplex::Cell& corners = complex_.cells[cell];
+  return std::any_of(corners.begin(), corners.end(), [&](Index v) { return place_[v] != Place::elsewhere; });
+}
+
+std::vector<std::array<double, 4>> Tailor::areas(const std::vector<Index>& cells,
+                                                 const Progress& progress) const {
+  std::vector<std::array<double, 4>> areas(cells.size());
+  for_each(cells.size(), grain, progress, [&](std::size_t i) {
+    for (int k = 0; k < 4; ++k) areas[i][k] = area(cells[i], k);
+  });
+  return areas;
+}
+
 // A minimum cut over the cells at the rims and at new points; what is further away is where the function has
 // it.
 void Tailor::cut(const Progress& progress) {
   label_ = complex_.inside;
   std::vector<Index> node(complex_.cells.size(), none), cells;
-  double total = 0;
   for (Index c = 0; c < complex_.cells.size(); ++c) {
     if (side_[c] == inside || side_[c] == outside) label_[c] = side_[c] == inside;
     if (side_[c] == both) ++figures_.contradictions;
-    const bool near = std::any_of(complex_.cells[c].begin(), complex_.cells[c].end(),
-                                  [&](Index v) { return place_[v] != Place::elsewhere; });
-    if (!near || (side_[c] != free && side_[c] != both)) continue;
+    if ((side_[c] != free && side_[c] != both) || !is_near(c)) continue;
     node[c] = static_cast<Index>(cells.size());
     cells.push_back(c);
-    for (int k = 0; k < 4; ++k) total += area(c, k);
   }
-  progress.check();
+  const std::vector<std::array<double, 4>> areas = this->areas(cells, progress);
+  double total = 0;
+  for (const std::array<double, 4>& facets : areas)
+    for (double facet : facets) total += facet;
   const double scale = total > 0 ? total_price / total : 0;
   GraphCut graph(cells.size(), 2 * cells.size());
   for (Index i = 0; i < cells.size(); ++i) {
     const Index c = cells[i];
     double surface = 0;
+    GraphCut::Capacity to_source = 0, to_sink = 0;
+    const auto add = [&](bool in, GraphCut::Capacity price) { (in ? to_source : to_sink) += price; };
     for (int k = 0; k < 4; ++k) {
-      const double facet = area(c, k);
-      surface += facet;
-      const auto price = static_cast<GraphCut::Capacity>(is_input(c, k) ? 0 : scale * facet);
+      surface += areas[i][k];
+      const auto price = static_cast<GraphCut::Capacity>(is_input(c, k) ? 0 : scale * areas[i][k]);
       const Index other = complex_.neighbours[c][k];
       if (other == none)
-        graph.tie(i, 0, price);
+        add(false, price);
       else if (node[other] == none)
-        graph.tie(i, label_[other] ? price : 0, label_[other] ? 0 : price);
+        add(label_[other], price);
       else if (other > c)
         graph.join(i, node[other], price);
     }
-    const auto price = static_cast<GraphCut::Capacity>(scale * unlikeness * surface);
-    graph.tie(i, complex_.inside[c] ? price : 0, complex_.inside[c] ? 0 : price);
+    add(complex_.inside[c], static_cast<GraphCut::Capacity>(scale * unlikeness * surface));
+    graph.tie(i, to_source, to_sink);
   }
   graph.cut();
   for (Index i = 0; i < cells.size(); ++i) label_[cells[i]] = graph.with_source(i);
@@ -306,10 +358,8 @@ SeparatingSurface Tailor::extract() const {
 SeparatingSurface Tailor::run(const Progress& progress) {
   place_vertices();
   index_faces();
-  match_facets();
-  progress.check();
-  flood_stars();
-  progress.check();
+  match_facets(progress);
+  flood_stars(progress);
   cut(progress);
   SeparatingSurface surface = extract();
   figures_.surplus = drop_surplus_facets(surface, in_.mesh, in_.topology);
