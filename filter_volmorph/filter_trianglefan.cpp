@@ -68,6 +68,10 @@ void apply(FilterRun& run) {
     if (published) return as_published(mesh, selection, {holes, pieces}, progress);
     ClosedHoles closed;
     closed.completion = close_by_fans(mesh, selection, {holes}, progress);
+    CompletionReport& report = closed.completion.report;
+    if (report.count(HoleOutcome::failed) > 0)
+      report.notes.push_back(
+          "\"Close Holes: Curve Unfolding\" can close most of the holes that a fan cannot");
     return closed;
   });
 }

@@ -26,6 +26,9 @@ std::vector<BoundaryLoop> rims_to_fill(const TriangleMesh& mesh, const Progress&
 void fill(const TriangleMesh& mesh, const std::vector<BoundaryLoop>& loops, Completion& completion,
           const Progress& progress) {
   completion.patch.input_vertices = static_cast<Index>(mesh.vertices.size());
+  std::size_t edges = 0;
+  for (const BoundaryLoop& loop : loops) edges += loop.vertices.size();
+  completion.patch.triangles.reserve(edges);  // or `append` would move them for every hole
   for (std::size_t i = 0; i < loops.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(loops.size()));
     HoleReport& hole = completion.report.holes[i];

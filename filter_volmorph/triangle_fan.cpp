@@ -155,6 +155,9 @@ void Fans::separate(const Progress& progress) {
 Patch Fans::finish() {
   Patch patch;
   patch.input_vertices = static_cast<Index>(mesh_.vertices.size());
+  std::size_t faces = 0;
+  for (const Filling& filling : fillings_) faces += filling.patch.triangles.size();
+  patch.triangles.reserve(faces);  // or `append` would move them for every hole
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     HoleReport& hole = holes_[i];
     if (!is_targeted(hole)) continue;

@@ -9,14 +9,14 @@ FILTER = "Close Holes: Triangle Fan"
 
 def letter_u():
     """A flat sheet with a hole in the form of a U: the mean of its rim lies outside of it."""
-    vertices = [(float(x), float(y), 0.0) for y in range(10) for x in range(10)]
-    hole = {(x, 1) for x in range(1, 8)} | {(x, y) for x in (1, 7) for y in range(1, 8)}
+    vertices = [(float(x), float(y), 0.0) for y in range(12) for x in range(12)]
+    hole = {(x, 2) for x in range(2, 9)} | {(x, y) for x in (2, 8) for y in range(2, 9)}
     faces = []
-    for y in range(9):
-        for x in range(9):
+    for y in range(11):
+        for x in range(11):
             if (x, y) not in hole:
-                a = 10 * y + x
-                faces += [(a, a + 1, a + 11), (a, a + 11, a + 10)]
+                a = 12 * y + x
+                faces += [(a, a + 1, a + 13), (a, a + 13, a + 12)]
     return vertices, faces
 
 
@@ -115,8 +115,6 @@ class AsPublished(Case):
         self.assertEqual(copy, original)
         self.assert_closed_manifold()
         self.assertIn("The new layer has 1 copy of vertices of the input, counted from 0: 0", self.log)
-        self.assertGreater(self.said("Self-intersecting pairs of faces"), 0)
-        self.assertEqual(report["figures"]["self-intersecting pairs"], self.said("Self-intersecting pairs of faces"))
 
     def test_all_pieces_but_the_largest_go_with_their_vertices(self):
         vertices, faces = sphere(rings=8)
@@ -138,6 +136,8 @@ class AsPublished(Case):
         write_ply(self.path("in.ply"), *letter_u())
         _, new, report = self.new_layer()
         self.assert_closed_manifold()
+        self.assertGreater(self.said("Self-intersecting pairs of faces"), 0)
+        self.assertEqual(report["figures"]["self-intersecting pairs"], self.said("Self-intersecting pairs of faces"))
         self.assertTrue(any("intersect: this mode does not avoid that" in note for note in report["notes"]), report["notes"])
 
     def test_nothing_to_change_makes_no_layer(self):

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -121,13 +122,13 @@ TEST(TriangleFan, is_a_single_triangle_where_floats_are_too_coarse_for_a_vertex)
 
 // The mean of the rim of a flat hole in the form of a U lies outside of it.
 TEST(TriangleFan, leaves_open_a_hole_whose_fan_would_meet_itself) {
-  const TriangleMesh grid = test::flat_grid(9, 9);
+  const TriangleMesh grid = test::flat_grid(11, 11);
   const TriangleMesh mesh = test::without_faces(grid, [&](Index f) {
     const Triangle& t = grid.triangles[f];
     const Vector3 middle = (grid.vertices[t[0]] + grid.vertices[t[1]] + grid.vertices[t[2]]) / 3;
     const auto within = [](double x, double low, double high) { return low < x && x < high; };
-    return (within(middle.x(), 1, 8) && within(middle.y(), 1, 2)) ||
-           ((within(middle.x(), 1, 2) || within(middle.x(), 7, 8)) && within(middle.y(), 1, 8));
+    return (within(middle.x(), 2, 9) && within(middle.y(), 2, 3)) ||
+           ((within(middle.x(), 2, 3) || within(middle.x(), 8, 9)) && within(middle.y(), 2, 9));
   });
   const Completion completion = close(mesh);
   EXPECT_TRUE(completion.patch.empty());
