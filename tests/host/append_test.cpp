@@ -329,6 +329,7 @@ TEST(AppendPatchToCopy, SplitsVerticesAndLeavesOutThoseThatOnlyRemovedFacesUsed)
   MeshModel& model = layer_from(document, cube_and_pinched_tetrahedra());
   test::give_all_attributes(model);
   Allocator<CMeshO>::DeleteVertex(model.cm, model.cm.vert[0]);
+  model.cm.svn = static_cast<int>(vcg::tri::UpdateSelection<CMeshO>::VertexCount(model.cm));
   const std::string before = layer_state(model);
   const Snapshot taken = snapshot(model);
   AppendOptions options;
@@ -340,7 +341,7 @@ TEST(AppendPatchToCopy, SplitsVerticesAndLeavesOutThoseThatOnlyRemovedFacesUsed)
   ASSERT_EQ(options.splits.size(), 1u);
   Patch nothing;
   nothing.input_vertices = static_cast<Index>(taken.mesh.vertices.size());
-  const MeshModel& copy = append_patch_to_copy(document, model, taken.mesh, nothing, "copy", options);
+  MeshModel& copy = append_patch_to_copy(document, model, taken.mesh, nothing, "copy", options);
   EXPECT_TRUE(layer_state(model) == before);
 
   const auto old = vertex_states(model);
