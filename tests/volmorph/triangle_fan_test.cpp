@@ -11,6 +11,7 @@
 #include "common/core/error.h"
 #include "common/core/mesh_statistics.h"
 #include "filter_volmorph/rim_fan.h"
+#include "tests/support/cancelling.h"
 #include "tests/support/meshes.h"
 #include "tests/support/patches.h"
 
@@ -203,6 +204,20 @@ TEST(TriangleFan, of_two_fans_with_one_apex_the_shorter_stays) {
     EXPECT_EQ(holes[1].reason, "the patch meets the patch of another hole");
     EXPECT_EQ(completion.patch.triangles.size(), 8u);
   }
+}
+
+// --- cancelling
+
+// The check of so long a rim takes many looks at the progress.
+TEST(TriangleFan, can_be_cancelled_at_any_time) {
+  std::vector<Vector3> rim;
+  for (int i = 0; i < 5000; ++i) {
+    const double turn = i * M_PI / 2500;
+    rim.push_back(as_stored(Vector3(std::cos(turn), std::sin(turn), 0)));
+  }
+  const TriangleMesh mesh = collar_under(rim);
+  test::expect_cancels_at_any_step(
+      [&](const Progress& progress) { close_by_fans(mesh, MeshSelection(), {}, progress); });
 }
 
 // --- which holes
