@@ -5,7 +5,7 @@
 : "${top:?}"
 cache=$top/.cache
 build=$top/build
-plugin_names=(filter_curveunfold filter_atomicvolumes filter_poissoncompletion filter_checkcompletion)
+plugin_names=(filter_curveunfold filter_atomicvolumes filter_poissoncompletion filter_volmorph filter_checkcompletion)
 
 say() { printf '== %s\n' "$*"; }
 

@@ -284,7 +284,7 @@ MeshStatistics measure(const TriangleMesh& mesh, bool count_intersections, const
                        });
   progress.update(combinatorics_done);
   if (count_intersections) {
-    s.self_intersecting_pairs = count_improper_pairs(corners_of(mesh));
+    s.self_intersecting_pairs = count_improper_pairs(corners_of(mesh), progress);
     progress.update(1);
   }
   return s;

@@ -71,6 +71,9 @@ struct CompletionReport {
   /// Faces of the input, by the caller's numbers, ascending, that the new layer lacks; only in modes that say
   /// so. The input itself has them still.
   std::vector<Index> removed_faces;
+  /// Vertices of the input, by the caller's numbers, ascending, that the new layer has copies of, so that
+  /// each fan of faces there has a vertex of its own; one entry for each copy. Only in modes that say so.
+  std::vector<Index> split_vertices;
 
   std::size_t count(HoleOutcome outcome) const;
 };

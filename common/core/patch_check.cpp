@@ -1,8 +1,6 @@
 #include "common/core/patch_check.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "common/core/box_tree.h"
 #include "common/core/patch_half_edges.h"
+#include "common/core/threads.h"
 #include "common/core/triangle_blocks.h"
 #include "common/core/triangle_intersection.h"
 
@@ -47,10 +46,11 @@ struct InputContacts {
 
 class Checker {
  public:
-  Checker(const InputNeighbourhood& input, const Patch& patch, const std::vector<const BoundaryLoop*>& rim)
-      : blocks_(input.blocks()), mesh_(input.mesh()), patch_(patch), rim_(rim) {}
+  Checker(const InputNeighbourhood& input, const Patch& patch, const std::vector<const BoundaryLoop*>& rim,
+          const Progress& progress)
+      : blocks_(input.blocks()), mesh_(input.mesh()), patch_(patch), rim_(rim), progress_(progress) {}
 
-  PatchCheck run(const Progress& progress);
+  PatchCheck run();
 
  private:
   bool is_new(Index vertex) const { return vertex >= patch_.input_vertices; }
@@ -83,12 +83,13 @@ class Checker {
   const TriangleMesh& mesh_;
   const Patch& patch_;
   const std::vector<const BoundaryLoop*>& rim_;
+  const Progress& progress_;
   PatchHalfEdges half_edges_;
   std::vector<Corners> corners_;
   PatchCheck result_;
 };
 
-PatchCheck Checker::run(const Progress& progress) {
+PatchCheck Checker::run() {
   using Step = void (Checker::*)();
   // Each step may rely on those before it having found nothing, but for the last one, which follows
   // intersections too.
@@ -107,7 +108,7 @@ PatchCheck Checker::run(const Progress& progress) {
     (this->*step)();
     // A patch that meets itself is searched for contacts with the input too, so that a caller can mend both.
     if (!result_.passed() && result_.defect != PatchDefect::meets_itself) break;
-    progress.update(done);
+    progress_.update(done);
   }
   sort_unique(result_.patch_triangles);
   sort_unique(result_.input_triangles);
@@ -258,7 +259,7 @@ void Checker::find_coincident_vertices() {
 }
 
 void Checker::find_self_intersections() {
-  for (const auto& [i, j] : improper_pairs(corners_)) {
+  for (const auto& [i, j] : improper_pairs(corners_, static_cast<std::size_t>(-1), progress_)) {
     report(PatchDefect::meets_itself);
     result_.patch_triangles.push_back(i);
     result_.patch_triangles.push_back(j);
@@ -314,14 +315,14 @@ void Checker::find_input_contacts() {
                          });
   InputContacts contacts;
   if (corners_.size() < worth_threads) {
-    for (std::size_t block : near) test_block(block, tree, order, contacts);
+    for (std::size_t block : near) {
+      progress_.check();
+      test_block(block, tree, order, contacts);
+    }
   } else {
     tbb::enumerable_thread_specific<InputContacts> found;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, near.size(), 4),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          test_block(near[i], tree, order, found.local());
-                      });
+    for_each(near.size(), 4, progress_,
+             [&](std::size_t i) { test_block(near[i], tree, order, found.local()); });
     for (const InputContacts& part : found) contacts.append(part);
   }
   const auto add = [&](PatchDefect defect, const std::vector<Index>& patch, const std::vector<Index>& input) {
@@ -391,7 +392,7 @@ std::vector<Index> InputNeighbourhood::triangles_in_box(const Vector3& low, cons
 
 PatchCheck check_patch(const InputNeighbourhood& input, const Patch& patch,
                        const std::vector<const BoundaryLoop*>& rim, const Progress& progress) {
-  return Checker(input, patch, rim).run(progress);
+  return Checker(input, patch, rim, progress).run();
 }
 
 std::vector<Index> input_triangles_met(const InputNeighbourhood& input,

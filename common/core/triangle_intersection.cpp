@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "common/core/box_tree.h"
+#include "common/core/threads.h"
 
 namespace meshcomplete {
 namespace {
@@ -30,6 +31,8 @@ constexpr double tiny = 1e-250;
 
 constexpr std::size_t worth_tree = 48;  // below that many triangles testing all pairs is faster than any tree
 constexpr std::size_t worth_threads = 4096;
+constexpr std::size_t rows_at_once =
+    64;  // triangles held against all others between two looks at the progress
 
 Point point(const Vector3& p) { return Point(p.x(), p.y(), p.z()); }
 
@@ -204,7 +207,7 @@ class PairList {
 };
 
 /// The least `limit` improper pairs among `triangles`, and how many there are.
-PairList self_pairs(const std::vector<Corners>& triangles, std::size_t limit) {
+PairList self_pairs(const std::vector<Corners>& triangles, std::size_t limit, const Progress& progress) {
   PairList found(limit);
   std::vector<Box> boxes = usable_boxes(triangles);
   if (triangles.size() < worth_tree) {
@@ -230,13 +233,15 @@ PairList self_pairs(const std::vector<Corners>& triangles, std::size_t limit) {
     }
   };
   if (triangles.size() < worth_threads) {
-    search(0, triangles.size(), found);
+    for (std::size_t i = 0; i < triangles.size(); i += rows_at_once) {
+      progress.check();
+      search(i, std::min(triangles.size(), i + rows_at_once), found);
+    }
     return found;
   }
   tbb::enumerable_thread_specific<PairList> lists([limit] { return PairList(limit); });
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, triangles.size(), 512),
-      [&](const tbb::blocked_range<std::size_t>& r) { search(r.begin(), r.end(), lists.local()); });
+  for_ranges(triangles.size(), rows_at_once, progress,
+             [&](std::size_t begin, std::size_t end) { search(begin, end, lists.local()); });
   for (const PairList& list : lists) found.add(list);
   return found;
 }
@@ -275,13 +280,13 @@ bool meet_improperly(const Corners& a, const Corners& b) {
   }
 }
 
-std::vector<std::pair<Index, Index>> improper_pairs(const std::vector<Corners>& triangles,
-                                                    std::size_t limit) {
-  return self_pairs(triangles, limit).sorted();
+std::vector<std::pair<Index, Index>> improper_pairs(const std::vector<Corners>& triangles, std::size_t limit,
+                                                    const Progress& progress) {
+  return self_pairs(triangles, limit, progress).sorted();
 }
 
-std::size_t count_improper_pairs(const std::vector<Corners>& triangles) {
-  return self_pairs(triangles, 0).count();
+std::size_t count_improper_pairs(const std::vector<Corners>& triangles, const Progress& progress) {
+  return self_pairs(triangles, 0, progress).count();
 }
 
 std::vector<std::pair<Index, Index>> improper_pairs_between(const std::vector<Corners>& a,

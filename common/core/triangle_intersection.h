@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/core/mesh.h"
+#include "common/core/progress.h"
 
 namespace meshcomplete {
 
@@ -24,12 +25,14 @@ bool segment_meets_triangle(const Vector3& a, const Vector3& b, const std::array
 
 /// All improper pairs (i < j, ascending) among `triangles`; degenerate ones and those with a coordinate that
 /// is not finite are left out. `limit` bounds the list (to its first ones), not the work. Threaded when there
-/// are many. Cost: O(n log n + pairs of overlapping boxes).
+/// are many. Throws `Cancelled`. Cost: O(n log n + pairs of overlapping boxes).
 std::vector<std::pair<Index, Index>> improper_pairs(const std::vector<std::array<Vector3, 3>>& triangles,
-                                                    std::size_t limit = static_cast<std::size_t>(-1));
+                                                    std::size_t limit = static_cast<std::size_t>(-1),
+                                                    const Progress& progress = Progress());
 
 /// How many pairs `improper_pairs` would list, without the memory for them.
-std::size_t count_improper_pairs(const std::vector<std::array<Vector3, 3>>& triangles);
+std::size_t count_improper_pairs(const std::vector<std::array<Vector3, 3>>& triangles,
+                                 const Progress& progress = Progress());
 
 /// All improper pairs (index in `a`, index in `b`), ascending; left out as in `improper_pairs`. Runs in the
 /// calling thread.

@@ -129,6 +129,44 @@ void remove_faces(const CMeshO& from, const std::vector<Index>& faces, CMeshO& c
   Allocator::CompactFaceVector(copy);
 }
 
+/// Gives fans of faces copies of their vertices. `position_of[v]` is the position in `to.vert` of vertex v.
+void split_vertices(CMeshO& to, const std::vector<VertexSplit>& splits,
+                    const std::vector<std::size_t>& position_of) {
+  if (splits.empty()) return;
+  std::size_t copy = to.vert.size();
+  Allocator::AddVertices(to, splits.size());
+  for (const VertexSplit& split : splits) {
+    const std::size_t place = position_of[split.vertex];
+    CVertexO& original = to.vert[place];
+    to.vert[copy].ImportData(original);
+    if (original.IsS()) ++to.svn;
+    for (const auto& attribute : to.vert_attr)
+      if (!attribute._name.empty()) attribute._handle->CopyValue(copy, place, attribute._handle);
+    for (const Index face : split.faces)
+      for (int corner = 0; corner < 3; ++corner)
+        if (to.face[face].V(corner) == &original) to.face[face].V(corner) = &to.vert[copy];
+    ++copy;
+  }
+}
+
+/// Deletes the vertices that faces left out used and no face of the copy does.
+void remove_stray_vertices(const CMeshO& from, const std::vector<Index>& left_out, CMeshO& copy,
+                           const std::vector<std::size_t>& position_of) {
+  std::vector<char> stray(copy.vert.size(), 0);
+  for (const Index face : left_out)
+    for (int corner = 0; corner < 3; ++corner)
+      stray[position_of[static_cast<std::size_t>(from.face[face].cV(corner) - from.vert.data())]] = 1;
+  for (const CFaceO& face : copy.face)
+    for (int corner = 0; corner < 3; ++corner)
+      stray[static_cast<std::size_t>(face.cV(corner) - copy.vert.data())] = 0;
+  for (std::size_t v = 0; v < stray.size(); ++v) {
+    if (!stray[v]) continue;
+    if (copy.vert[v].IsS()) --copy.svn;
+    Allocator::DeleteVertex(copy, copy.vert[v]);
+  }
+  Allocator::CompactVertexVector(copy);
+}
+
 /// Where each vertex of a layer stands in a copy that leaves out the deleted ones.
 std::vector<std::size_t> positions_in_copy(const CMeshO& mesh) {
   std::vector<std::size_t> positions(mesh.vert.size(), 0);
@@ -149,7 +187,8 @@ std::vector<std::size_t> same_positions(const CMeshO& mesh) {
 Appended append_patch(MeshModel& model, const TriangleMesh& mesh, const Patch& patch,
                       const AppendOptions& options) {
   refuse_foreign(model, mesh, patch);
-  if (!options.left_out.empty()) throw std::logic_error("faces are left out of copies only");
+  if (!options.left_out.empty() || !options.splits.empty())
+    throw std::logic_error("faces are left out of copies only, and vertices split there only");
   if (patch.empty()) return {model.cm.vert.size(), 0, model.cm.face.size(), 0};
   const PatchAttributes attributes = patch_attributes(model, mesh, patch);
   return append_computed(model, patch, attributes, same_positions(model.cm), options);
@@ -163,7 +202,10 @@ MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, 
   try {
     copy_layer(model, *copy);
     remove_faces(model.cm, options.left_out, copy->cm);
-    append_computed(*copy, patch, attributes, positions_in_copy(model.cm), options);
+    const std::vector<std::size_t> positions = positions_in_copy(model.cm);
+    append_computed(*copy, patch, attributes, positions, options);
+    split_vertices(copy->cm, options.splits, positions);
+    if (options.leave_out_vertices) remove_stray_vertices(model.cm, options.left_out, copy->cm, positions);
   } catch (...) {
     document.delMesh(copy);
     throw;

@@ -7,6 +7,7 @@
 
 #include "common/core/mesh.h"
 #include "common/core/patch.h"
+#include "common/core/vertex_splits.h"
 #include "common/host/meshlab_version.h"
 
 namespace meshcomplete {
@@ -18,6 +19,12 @@ struct AppendOptions {
   bool select_new_faces = false;
   /// Positions in `CMeshO::face`, ascending, of faces that a copy lacks. Not for `append_patch`.
   std::vector<Index> left_out;
+  /// Vertices that fans of faces in a copy get copies of, with all that the vertex has. Vertices are numbered
+  /// as in the layer, faces as in the copy: those that are left of the layer, then the patch's. Not for
+  /// `append_patch`.
+  std::vector<VertexSplit> splits;
+  /// Vertices that only faces left out used are left out of the copy as well.
+  bool leave_out_vertices = false;
 };
 
 /// Where the patch went: it stands at the end of the vertex and of the face list.
@@ -40,8 +47,9 @@ Appended append_patch(MeshModel& model, const TriangleMesh& mesh, const Patch& p
 
 /// Adds a layer named `name` that is a complete copy of `model` with the patch appended, makes it the current
 /// layer and leaves `model` as it is. Deleted elements are not copied, nor are the faces that the options
-/// leave out; their vertices are. Custom attributes of the usual types (numbers, points, colours) are copied.
-/// When it throws, the document is as before.
+/// leave out; their vertices are, unless the options say otherwise. Copies of vertices come after the
+/// patch's. Custom attributes of the usual types (numbers, points, colours) are copied. When it throws, the
+/// document is as before.
 MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, const TriangleMesh& mesh,
                                 const Patch& patch, const QString& name,
                                 const AppendOptions& options = AppendOptions());

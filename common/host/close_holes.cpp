@@ -30,11 +30,18 @@ QString derived_name(const QString& name, const QString& what) {
   return QString("%1 (%2)").arg(QString(name).remove(extension), what);
 }
 
-// Where no hole was closed there is no new layer, and nothing is removed.
+// Whether there is anything to make a layer of.
+bool changes_something(const ClosedHoles& result) {
+  const bool removes = result.removed && !result.removed->empty();
+  return !result.completion.patch.empty() || (result.cleaned && (removes || !result.splits.empty()));
+}
+
+// Where there is no new layer, nothing is removed.
 void list_removed(const Snapshot& input, const ClosedHoles& result, CompletionReport& report) {
-  if (!result.removed || result.completion.patch.empty()) return;
+  if (!result.removed || !changes_something(result)) return;
   for (const Index triangle : *result.removed)
     report.removed_faces.push_back(input.face_of_triangle[triangle]);
+  for (const VertexSplit& split : result.splits) report.split_vertices.push_back(split.vertex);
 }
 
 void append_result(FilterRun& run, MeshModel& model, const Snapshot& input, const ClosedHoles& result) {
@@ -43,7 +50,10 @@ void append_result(FilterRun& run, MeshModel& model, const Snapshot& input, cons
   options.select_new_faces = run.parameters.boolean("NewFaceSelected");
   const QString name = model.label();
   options.left_out = run.report.removed_faces;
-  if ((result.removed || run.parameters.boolean("AsNewLayer")) && !patch.empty())
+  options.splits = result.splits;
+  options.leave_out_vertices = result.cleaned;
+  const bool new_layer = result.removed || run.parameters.boolean("AsNewLayer");
+  if (new_layer && changes_something(result))
     append_patch_to_copy(run.document, model, input.mesh, patch, derived_name(name, "closed"), options);
   else
     append_patch(model, input.mesh, patch, options);

@@ -10,6 +10,7 @@
 #include "common/core/mesh.h"
 #include "common/core/patch.h"
 #include "common/core/progress.h"
+#include "common/core/vertex_splits.h"
 #include "common/host/close_holes_parameters.h"
 #include "common/host/filter_declaration.h"
 
@@ -29,6 +30,12 @@ struct ClosedHoles {
   /// without their faces, whatever the parameters say. An empty list is such a layer too. Absent: the patch
   /// goes with the mesh as it is.
   std::optional<std::vector<Index>> removed = std::nullopt;
+  /// Fans of faces that get copies of their vertices in the new layer; the faces are numbered as there: the
+  /// triangles that are left, then the patch's. Only where `removed` is there.
+  std::vector<VertexSplit> splits = {};
+  /// Removing and splitting was asked for by itself: a new layer is made for that even if no hole was closed,
+  /// and vertices that only removed faces used are not in it.
+  bool cleaned = false;
 };
 
 /// What a filter itself does: everything else is common.

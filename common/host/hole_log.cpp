@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t most_single_lines = 30;
 constexpr int most_open_lines = 100;
-constexpr std::size_t most_removed_faces = 100;
+constexpr std::size_t most_listed = 100;  // numbers of faces or vertices
 
 QString counted(std::size_t number, const char* singular, const char* plural) {
   return QString("%1 %2").arg(number).arg(number == 1 ? singular : plural);
@@ -56,15 +56,23 @@ QString describe_closed(const CompletionReport& report) {
       .arg(counted(faces, "face", "faces"));
 }
 
-QString describe_removed(const std::vector<Index>& faces) {
+QString listed(const std::vector<Index>& elements) {
   QStringList numbers;
-  for (std::size_t i = 0; i < std::min(most_removed_faces, faces.size()); ++i)
-    numbers << QString::number(faces[i]);
-  QString line = QString("The new layer lacks %1 of the input, counted from 0: %2")
-                     .arg(counted(faces.size(), "face", "faces"), numbers.join(", "));
-  if (faces.size() > most_removed_faces)
-    line += QString(" and %1 more").arg(faces.size() - most_removed_faces);
+  for (std::size_t i = 0; i < std::min(most_listed, elements.size()); ++i)
+    numbers << QString::number(elements[i]);
+  QString line = numbers.join(", ");
+  if (elements.size() > most_listed) line += QString(" and %1 more").arg(elements.size() - most_listed);
   return line;
+}
+
+QString describe_removed(const std::vector<Index>& faces) {
+  return QString("The new layer lacks %1 of the input, counted from 0: %2")
+      .arg(counted(faces.size(), "face", "faces"), listed(faces));
+}
+
+QString describe_split(const std::vector<Index>& vertices) {
+  return QString("The new layer has %1 of vertices of the input, counted from 0: %2")
+      .arg(counted(vertices.size(), "copy", "copies"), listed(vertices));
 }
 
 QString describe_figures(const CompletionReport& report) {
@@ -108,6 +116,7 @@ QStringList describe_holes(const CompletionReport& report) {
     lines << QString("... and %1 more that are not closed").arg(open - most_open_lines);
   for (const std::string& note : report.notes) lines << QString::fromStdString(note);
   if (!report.removed_faces.empty()) lines << describe_removed(report.removed_faces);
+  if (!report.split_vertices.empty()) lines << describe_split(report.split_vertices);
   if (!report.figures.empty()) lines << describe_figures(report);
   return lines << summary(report);
 }

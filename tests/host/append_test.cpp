@@ -7,6 +7,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "common/core/mesh_statistics.h"
+#include "common/core/mesh_topology.h"
 #include "common/host/snapshot.h"
 #include "tests/host/test_documents.h"
 #include "tests/support/meshes.h"
@@ -313,6 +315,66 @@ TEST(AddLayer, HoldsTheMeshAndDoesNotBecomeCurrent) {
   EXPECT_TRUE(layer_state(sphere.model) == before);
   EXPECT_EQ(snapshot(layer).mesh.triangles, mesh.triangles);
   EXPECT_EQ(snapshot(layer).mesh.vertices, mesh.vertices);
+}
+
+/// A vertex that is deleted, one without a face, a cube, and two tetrahedra with one vertex in common.
+TriangleMesh cube_and_pinched_tetrahedra() {
+  TriangleMesh mesh;
+  mesh.vertices = {Vector3(9, 9, 9), Vector3(8, 8, 8)};
+  return test::join(test::join(mesh, test::cube()), test::pinched_tetrahedra());
+}
+
+TEST(AppendPatchToCopy, SplitsVerticesAndLeavesOutThoseThatOnlyRemovedFacesUsed) {
+  MeshDocument document;
+  MeshModel& model = layer_from(document, cube_and_pinched_tetrahedra());
+  test::give_all_attributes(model);
+  Allocator<CMeshO>::DeleteVertex(model.cm, model.cm.vert[0]);
+  model.cm.svn = static_cast<int>(vcg::tri::UpdateSelection<CMeshO>::VertexCount(model.cm));
+  const std::string before = layer_state(model);
+  const Snapshot taken = snapshot(model);
+  AppendOptions options;
+  for (Index f = 0; f < 12; ++f) options.left_out.push_back(f);
+  options.leave_out_vertices = true;
+  TriangleMesh rest = taken.mesh;
+  rest.triangles.erase(rest.triangles.begin(), rest.triangles.begin() + 12);
+  options.splits = split_overlapping_vertices(rest, build_topology(rest));
+  ASSERT_EQ(options.splits.size(), 1u);
+  Patch nothing;
+  nothing.input_vertices = static_cast<Index>(taken.mesh.vertices.size());
+  MeshModel& copy = append_patch_to_copy(document, model, taken.mesh, nothing, "copy", options);
+  EXPECT_TRUE(layer_state(model) == before);
+
+  const auto old = vertex_states(model);
+  std::vector<std::string> expected = {old[1]};
+  expected.insert(expected.end(), old.begin() + 10, old.end());
+  expected.push_back(old[options.splits[0].vertex]);
+  EXPECT_TRUE(vertex_states(copy) == expected);
+  EXPECT_EQ(std::size_t(copy.cm.vn), expected.size());
+  EXPECT_EQ(std::size_t(copy.cm.svn), vcg::tri::UpdateSelection<CMeshO>::VertexCount(copy.cm));
+  const MeshStatistics statistics = measure(snapshot(copy).mesh, false);
+  EXPECT_EQ(statistics.faces, 8u);
+  EXPECT_EQ(statistics.components, 2u);
+  EXPECT_TRUE(statistics.manifold() && statistics.watertight());
+}
+
+TEST(AppendPatchToCopy, SplitsVerticesOfThePatchsFacesToo) {
+  Sphere sphere;
+  const Snapshot taken = snapshot(sphere.model);
+  const Patch patch = fans(taken.mesh);
+  AppendOptions options;
+  const auto kept = static_cast<Index>(taken.mesh.triangles.size());
+  const Index vertex = patch.triangles[0][0];
+  options.splits = {{vertex, {kept}}};
+  const MeshModel& copy =
+      append_patch_to_copy(sphere.document, sphere.model, taken.mesh, patch, "copy", options);
+  const TriangleMesh after = snapshot(copy).mesh;
+  const auto added = static_cast<Index>(taken.mesh.vertices.size() + patch.vertices.size());
+  EXPECT_EQ(after.vertices.size(), added + 1u);
+  EXPECT_EQ(after.vertices[added], taken.mesh.vertices[vertex]);
+  for (Index f = 0; f < after.triangles.size(); ++f)
+    EXPECT_EQ(after.triangles[f], f == kept
+                                      ? (Triangle{added, patch.triangles[0][1], patch.triangles[0][2]})
+                                      : (f < kept ? taken.mesh.triangles[f] : patch.triangles[f - kept]));
 }
 
 }  // namespace

@@ -192,6 +192,33 @@ TEST_F(CloseHolesTest, WhenNothingWasClosedNothingIsRemoved) {
   EXPECT_TRUE(test::document_state(document) == before);
 }
 
+TEST_F(CloseHolesTest, CleaningMakesALayerEvenIfNothingWasClosed) {
+  const std::string before = test::layer_state(model);
+  std::vector<Index> removed = {1, 2};
+  std::vector<VertexSplit> splits = {{5, {0}}};
+  FakePlugin plugin({close_holes_filter(
+      [&](const TriangleMesh& mesh, const MeshSelection&, const HoleSelectionOptions&, const Progress&) {
+        ClosedHoles result;
+        result.completion.patch.input_vertices = static_cast<Index>(mesh.vertices.size());
+        result.removed = removed;
+        result.splits = splits;
+        result.cleaned = true;
+        return result;
+      })});
+  ASSERT_TRUE(plugin.run(document)) << qPrintable(plugin.message());
+  EXPECT_TRUE(test::layer_state(model) == before);
+  ASSERT_EQ(document.meshList.size(), 2);
+  EXPECT_EQ(plugin.last_report().removed_faces, removed);
+  EXPECT_EQ(plugin.last_report().split_vertices, std::vector<Index>{5});
+  EXPECT_TRUE(plugin.log().contains("The new layer lacks 2 faces of the input, counted from 0: 1, 2"));
+  EXPECT_TRUE(plugin.log().contains("The new layer has 1 copy of vertices of the input, counted from 0: 5"));
+  removed.clear();
+  splits.clear();
+  document.setCurrentMesh(model.id());
+  ASSERT_TRUE(plugin.run(document));
+  EXPECT_EQ(document.meshList.size(), 2) << "there was nothing to change";
+}
+
 TEST_F(CloseHolesTest, WhenNothingWasClosedThereIsNoNewLayer) {
   ASSERT_TRUE(fan_plugin.run(document, 0, [](RichParameterList& list) {
     set(list, "AsNewLayer", true);

@@ -19,6 +19,7 @@
 #include "common/core/patch_check.h"
 #include "common/core/triangle_intersection.h"
 #include "filter_curveunfold/curve_unfolding.h"
+#include "filter_volmorph/triangle_fan.h"
 #include "tests/support/loop_families.h"
 #include "tests/support/meshes.h"
 #include "tests/support/patches.h"
@@ -37,9 +38,8 @@ struct Family {
   const char* name;
   std::function<TriangleMesh()> make;
   std::optional<std::size_t> closed;  ///< how many of its boundary loops get a patch; absent: some, none, all
+  std::optional<std::size_t> fans = closed;  ///< the same for triangle fans
 };
-
-void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
 
 /// A rim that winds twice round its axis before it closes: no plane shows it as a simple polygon.
 TriangleMesh wound_collar() {
@@ -85,11 +85,11 @@ const std::vector<Family>& families() {
       {"two_components", two_components, 4},
       {"noisy_rim", noisy_rim, 1},
       {"wavy_collar", wavy_collar, 2},
-      {"wound_collar", wound_collar, std::nullopt},
-      {"two_tents", two_tents, std::nullopt},
+      {"wound_collar", wound_collar, std::nullopt, 0},
+      {"two_tents", two_tents, std::nullopt, 2},
       {"touching_holes", [] { return test::sphere_with_touching_holes(); }, 2},
-      {"ragged_holes", [] { return test::rough_sphere_with_ragged_holes(3, 4, 7); }, 3},
-      {"rough_sheet", [] { return test::rough_sheet(14, 14, 0.3, 3, 5); }, 2},
+      {"ragged_holes", [] { return test::rough_sphere_with_ragged_holes(3, 4, 7); }, 3, 1},
+      {"rough_sheet", [] { return test::rough_sheet(14, 14, 0.3, 3, 5); }, 2, 1},
       {"flat_grid", [] { return test::flat_grid(4, 3); }, 0},
       {"fin", [] { return test::sphere_with_hole_and_fin(); }, 1},
       {"book", [] { return test::book(); }, 0},
@@ -111,19 +111,44 @@ const std::vector<Family>& families() {
 // --- what is compared
 // ----------------------------------------------------------------------------------------------
 
-CurveUnfoldingResult fill(const TriangleMesh& mesh,
-                          const CurveUnfoldingOptions& options = CurveUnfoldingOptions(),
-                          const Progress& progress = Progress()) {
-  return fill_by_curve_unfolding(mesh, MeshSelection(), options, progress);
+using Closing = std::function<Completion(const TriangleMesh& mesh, const Progress& progress)>;
+
+Completion by_curves(const TriangleMesh& mesh, const Progress& progress) {
+  return fill_by_curve_unfolding(mesh, MeshSelection(), CurveUnfoldingOptions(), progress).completion;
 }
 
-std::size_t closed_holes(const CurveUnfoldingResult& result) {
-  return result.completion.report.count(HoleOutcome::closed);
+Completion by_fans(const TriangleMesh& mesh, const Progress& progress) {
+  return close_by_fans(mesh, MeshSelection(), TriangleFanOptions(), progress);
 }
 
-std::string what_happened(const CurveUnfoldingResult& result) {
+/// A family, a filter that closes each hole for itself, and how many it closes.
+struct Case {
+  std::string name;
+  std::function<TriangleMesh()> make;
+  std::optional<std::size_t> closed;
+  Closing close;
+
+  Completion fill(const TriangleMesh& mesh, const Progress& progress = Progress()) const {
+    return close(mesh, progress);
+  }
+};
+
+void PrintTo(const Case& param, std::ostream* out) { *out << param.name; }
+
+std::vector<Case> cases(const std::vector<Family>& families) {
+  std::vector<Case> list;
+  for (const Family& family : families) {
+    list.push_back({family.name, family.make, family.closed, by_curves});
+    list.push_back({std::string(family.name) + "_fan", family.make, family.fans, by_fans});
+  }
+  return list;
+}
+
+std::size_t closed_holes(const Completion& result) { return result.report.count(HoleOutcome::closed); }
+
+std::string what_happened(const Completion& result) {
   std::string text;
-  for (const HoleReport& hole : result.completion.report.holes)
+  for (const HoleReport& hole : result.report.holes)
     text +=
         std::to_string(hole.edges) + " edges: " + name(hole.outcome) + ", " + hole.route + hole.reason + "\n";
   return text;
@@ -136,9 +161,9 @@ bool same(const TriangleMesh& a, const TriangleMesh& b) {
 /// What became of each hole, whatever the order: edges, outcome, and why it was skipped. (Why the last try
 /// for a hole failed, after many others, may depend on the rounding.)
 using Fate = std::tuple<std::size_t, HoleOutcome, std::string>;
-std::vector<Fate> fates(const CurveUnfoldingResult& result) {
+std::vector<Fate> fates(const Completion& result) {
   std::vector<Fate> list;
-  for (const HoleReport& hole : result.completion.report.holes)
+  for (const HoleReport& hole : result.report.holes)
     list.emplace_back(hole.edges, hole.outcome,
                       hole.outcome == HoleOutcome::skipped ? hole.reason : std::string());
   std::sort(list.begin(), list.end());
@@ -165,7 +190,7 @@ TriangleMesh on_coarse_grid(const TriangleMesh& mesh) {
   return transformed(mesh, [](const Vector3& p) { return Vector3((p * 4096).array().round() / 4096); });
 }
 
-class CompletionProperty : public ::testing::TestWithParam<Family> {};
+class CompletionProperty : public ::testing::TestWithParam<Case> {};
 
 /// What takes many runs on one mesh: without the family for which every way is tried in vain.
 class CompletionInvariance : public CompletionProperty {};
@@ -178,10 +203,11 @@ std::vector<Family> quick_families() {
   return list;
 }
 
-std::string name_of(const ::testing::TestParamInfo<Family>& info) { return info.param.name; }
+std::string name_of(const ::testing::TestParamInfo<Case>& info) { return info.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Families, CompletionProperty, ::testing::ValuesIn(families()), name_of);
-INSTANTIATE_TEST_SUITE_P(Families, CompletionInvariance, ::testing::ValuesIn(quick_families()), name_of);
+INSTANTIATE_TEST_SUITE_P(Families, CompletionProperty, ::testing::ValuesIn(cases(families())), name_of);
+INSTANTIATE_TEST_SUITE_P(Families, CompletionInvariance, ::testing::ValuesIn(cases(quick_families())),
+                         name_of);
 
 // --- the result
 // ----------------------------------------------------------------------------------------------------
@@ -189,13 +215,13 @@ INSTANTIATE_TEST_SUITE_P(Families, CompletionInvariance, ::testing::ValuesIn(qui
 TEST_P(CompletionProperty, PatchIsSoundAndInputIsLeftAlone) {
   const TriangleMesh mesh = GetParam().make();
   const TriangleMesh before = mesh;
-  const CurveUnfoldingResult result = fill(mesh);
+  const Completion result = GetParam().fill(mesh);
   EXPECT_TRUE(same(mesh, before));
   EXPECT_EQ(closed_holes(result), GetParam().closed.value_or(closed_holes(result))) << what_happened(result);
 
   // The loops with their holes closed: the report is in their order.
   const std::vector<BoundaryLoop> loops = loops_of(mesh);
-  const std::vector<HoleReport>& holes = result.completion.report.holes;
+  const std::vector<HoleReport>& holes = result.report.holes;
   ASSERT_EQ(holes.size(), loops.size());
   std::vector<const BoundaryLoop*> rims;
   std::size_t vertices = 0, faces = 0;
@@ -207,7 +233,7 @@ TEST_P(CompletionProperty, PatchIsSoundAndInputIsLeftAlone) {
     vertices += holes[i].vertices_added;
     faces += holes[i].faces_added;
   }
-  const Patch& patch = result.completion.patch;
+  const Patch& patch = result.patch;
   EXPECT_EQ(patch.input_vertices, mesh.vertices.size());
   EXPECT_EQ(patch.vertices.size(), vertices);
   EXPECT_EQ(patch.triangles.size(), faces);
@@ -223,9 +249,9 @@ TEST_P(CompletionProperty, PatchIsSoundAndInputIsLeftAlone) {
 
 TEST_P(CompletionProperty, SecondRunFindsNothingToDo) {
   const TriangleMesh mesh = GetParam().make();
-  const CurveUnfoldingResult first = fill(mesh);
-  const CurveUnfoldingResult second = fill(with_patch(mesh, first.completion.patch));
-  EXPECT_TRUE(second.completion.patch.empty());
+  const Completion first = GetParam().fill(mesh);
+  const Completion second = GetParam().fill(with_patch(mesh, first.patch));
+  EXPECT_TRUE(second.patch.empty());
   std::vector<Fate> open = fates(first);
   open.erase(std::remove_if(open.begin(), open.end(),
                             [](const Fate& fate) { return std::get<1>(fate) == HoleOutcome::closed; }),
@@ -240,61 +266,61 @@ TEST_P(CompletionProperty, ThreadsDoNotMatter) {
   const TriangleMesh mesh = GetParam().make();
   const auto with_threads = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return fill(mesh);
+    return GetParam().fill(mesh);
   };
-  const CurveUnfoldingResult one = with_threads(1), two = with_threads(2);
-  EXPECT_EQ(distance(one.completion.patch, two.completion.patch), 0);
+  const Completion one = with_threads(1), two = with_threads(2);
+  EXPECT_EQ(distance(one.patch, two.patch), 0);
   EXPECT_EQ(fates(one), fates(two));
 }
 
 TEST_P(CompletionInvariance, ScalingByPowersOfTwoIsExact) {
   const TriangleMesh mesh = GetParam().make();
-  const CurveUnfoldingResult plain = fill(mesh);
+  const Completion plain = GetParam().fill(mesh);
   for (const double factor : {0x1p-12, 0x1p10}) {
-    CurveUnfoldingResult scaled = fill(test::scaled(mesh, factor));
-    for (Vector3& p : scaled.completion.patch.vertices) p /= factor;
-    EXPECT_EQ(distance(plain.completion.patch, scaled.completion.patch), 0) << factor;
+    Completion scaled = GetParam().fill(test::scaled(mesh, factor));
+    for (Vector3& p : scaled.patch.vertices) p /= factor;
+    EXPECT_EQ(distance(plain.patch, scaled.patch), 0) << factor;
     EXPECT_EQ(fates(plain), fates(scaled)) << factor;
   }
 }
 
 TEST_P(CompletionInvariance, MovingChangesNothingButTheRounding) {
   const TriangleMesh mesh = on_coarse_grid(GetParam().make());
-  const CurveUnfoldingResult plain = fill(mesh);
+  const Completion plain = GetParam().fill(mesh);
   for (const Vector3& offset : {Vector3(17, -5, 3), Vector3(-1024, 512, 0)}) {
-    const CurveUnfoldingResult moved =
-        fill(transformed(mesh, [&](const Vector3& p) { return Vector3(p + offset); }));
+    const Completion moved =
+        GetParam().fill(transformed(mesh, [&](const Vector3& p) { return Vector3(p + offset); }));
     EXPECT_EQ(fates(plain), fates(moved)) << offset.transpose();
-    Patch expected = plain.completion.patch;
+    Patch expected = plain.patch;
     for (Vector3& p : expected.vertices) p = as_stored(p + offset);
     // The new place is rounded to floats, and so was the old one.
     const double spacing = std::ldexp(1.0, std::ilogb(offset.cwiseAbs().maxCoeff() + 2) - 23);
-    EXPECT_LE(distance(expected, moved.completion.patch), 2 * spacing) << offset.transpose();
+    EXPECT_LE(distance(expected, moved.patch), 2 * spacing) << offset.transpose();
   }
 }
 
 TEST_P(CompletionInvariance, QuarterTurnsKeepEveryFate) {
   const TriangleMesh mesh = GetParam().make();
-  const CurveUnfoldingResult plain = fill(mesh);
+  const Completion plain = GetParam().fill(mesh);
   const std::vector<std::function<Vector3(const Vector3&)>> turns = {
       [](const Vector3& p) { return Vector3(-p.y(), p.x(), p.z()); },
       [](const Vector3& p) { return Vector3(p.x(), -p.z(), p.y()); },
       [](const Vector3& p) { return Vector3(p.z(), p.y(), -p.x()); },
   };
   for (const auto& turn : turns) {
-    const CurveUnfoldingResult turned = fill(transformed(mesh, turn));
+    const Completion turned = GetParam().fill(transformed(mesh, turn));
     EXPECT_EQ(fates(plain), fates(turned)) << what_happened(plain) << what_happened(turned);
     // The sums are rounded differently, and ties (test meshes are symmetric) broken differently.
-    const double faces = static_cast<double>(plain.completion.patch.triangles.size());
-    EXPECT_NEAR(static_cast<double>(turned.completion.patch.triangles.size()), faces, 0.1 * faces + 4);
+    const double faces = static_cast<double>(plain.patch.triangles.size());
+    EXPECT_NEAR(static_cast<double>(turned.patch.triangles.size()), faces, 0.1 * faces + 4);
   }
 }
 
 TEST_P(CompletionInvariance, NumberingDoesNotMatter) {
   const TriangleMesh mesh = GetParam().make();
-  const CurveUnfoldingResult plain = fill(mesh);
+  const Completion plain = GetParam().fill(mesh);
   for (const std::uint32_t seed : {1u, 2u})
-    EXPECT_EQ(fates(plain), fates(fill(test::shuffled(mesh, seed)))) << seed;
+    EXPECT_EQ(fates(plain), fates(GetParam().fill(test::shuffled(mesh, seed)))) << seed;
 }
 
 // --- cancelling
@@ -303,9 +329,9 @@ TEST_P(CompletionInvariance, NumberingDoesNotMatter) {
 TEST_P(CompletionProperty, CancellingThrowsAndLeavesNothingBehind) {
   const TriangleMesh mesh = GetParam().make();
   const TriangleMesh before = mesh;
-  const CurveUnfoldingResult whole = fill(mesh);
+  const Completion whole = GetParam().fill(mesh);
   int calls = 0;
-  fill(mesh, CurveUnfoldingOptions(), Progress([&](double, const std::string&) { return ++calls, true; }));
+  GetParam().fill(mesh, Progress([&](double, const std::string&) { return ++calls, true; }));
   ASSERT_GE(calls, 1);
   std::mt19937 random(11);
   for (int round = 0; round < 3; ++round) {
@@ -313,10 +339,10 @@ TEST_P(CompletionProperty, CancellingThrowsAndLeavesNothingBehind) {
     int count = 0;
     bool asked = false, thrown = false;
     try {
-      fill(mesh, CurveUnfoldingOptions(), Progress([&](double, const std::string&) {
-             asked = ++count >= last;  // how often the receiver is called depends on the clock
-             return !asked;
-           }));
+      GetParam().fill(mesh, Progress([&](double, const std::string&) {
+                        asked = ++count >= last;  // how often the receiver is called depends on the clock
+                        return !asked;
+                      }));
     } catch (const Cancelled&) {
       thrown = true;
     }
@@ -324,7 +350,7 @@ TEST_P(CompletionProperty, CancellingThrowsAndLeavesNothingBehind) {
     EXPECT_LE(count, last);
     EXPECT_TRUE(same(mesh, before));
   }
-  EXPECT_EQ(distance(fill(mesh).completion.patch, whole.completion.patch), 0);
+  EXPECT_EQ(distance(GetParam().fill(mesh).patch, whole.patch), 0);
 }
 
 // --- options
@@ -359,7 +385,7 @@ TEST(CompletionOptions, OutOfRangeIsRefusedWithAMessage) {
     CurveUnfoldingOptions options;
     spoil(options);
     try {
-      fill(mesh, options);
+      fill_by_curve_unfolding(mesh, MeshSelection(), options);
       ADD_FAILURE() << what << " was taken";
     } catch (const CompletionError& error) {
       EXPECT_FALSE(std::string(error.what()).empty()) << what;

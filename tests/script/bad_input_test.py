@@ -131,5 +131,9 @@ class BadInputOfPoissonDriven(BadInput):
     filter = "Close Holes: Poisson-driven"
 
 
+class BadInputOfTriangleFan(BadInput):
+    filter = "Close Holes: Triangle Fan"
+
+
 if __name__ == "__main__":
     sys.exit(unittest.main(verbosity=2))

@@ -21,6 +21,7 @@ PICTURES = BUILD / "gui-test"
 CURVE_UNFOLDING = "Close Holes: Curve Unfolding"
 ATOMIC_VOLUMES = "Close Holes: Atomic Volumes"
 POISSON_DRIVEN = "Close Holes: Poisson-driven"
+TRIANGLE_FAN = "Close Holes: Triangle Fan"
 
 
 class Screen:
@@ -172,6 +173,9 @@ class Window(unittest.TestCase):
 
     def test_poisson_driven(self):
         self.close_holes(POISSON_DRIVEN, "poisson-driven")
+
+    def test_triangle_fan(self):
+        self.close_holes(TRIANGLE_FAN, "triangle-fan")
 
     def test_a_failure_is_a_message(self):
         mesh = self.home / "cloud.ply"

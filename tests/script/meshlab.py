@@ -38,6 +38,7 @@ FILTERS = {
         ("RichFloat", "Screening", "16"), ("RichFloat", "Samples", "4"), ("RichEnum", "Interpolation", "0"),
         ("RichBool", "PartialFill", "false"), ("RichInt", "RemoveRings", "0"), ("RichAbsPerc", "EdgeLength", "0"),
         ("RichInt", "Rings", "3"), ("RichAbsPerc", "CushionRadius", "0"), ("RichEnum", "Fairing", "0")],
+    "Close Holes: Triangle Fan": CLOSE_HOLES + [("RichBool", "AsPublished", "false"), ("RichEnum", "Spanning", "0")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select Border": [],

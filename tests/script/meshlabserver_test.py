@@ -206,6 +206,38 @@ class PoissonDriven(MeshLabTest):
         self.assert_refused(self.close([points, mesh], GuideLayer=1), "points that have no normals")
 
 
+class TriangleFan(MeshLabTest):
+    filter = "Close Holes: Triangle Fan"
+
+    def test_closes_both_holes(self):
+        before, after, _ = self.assert_closes_the_band()
+        self.assertEqual(len(after.positions), len(before.positions) + 2)
+        self.assertEqual(len(after.faces), len(before.faces) + 48)
+
+    def test_as_published(self):
+        """A face between three vertices of one rim, and a second band that is not connected to the first."""
+        vertices, faces = mesh_files.band()
+        more, _ = mesh_files.band(radius=0.2, centre=(5.0, 0.0, 0.0), segments=24)
+        spanning = (0, 8, 16)
+        path = self.folder / "spanned.ply"
+        small = [tuple(v + len(vertices) for v in face) for face in faces[:40]]
+        mesh_files.write_ply(path, vertices + more, [spanning] + faces + small)
+        run = self.close(path, AsPublished="true")
+        self.assertTrue(run.saved, run)
+        after = mesh_files.Ply(run.output)
+        self.assertTrue(mesh_files.is_closed_manifold(after.faces), run)
+        self.assertEqual([tuple(face) for face in after.faces[:len(faces)]], faces)
+        self.assertIn("Removed 41 hole-spanning faces, in 2 pieces", run.log)
+        self.assertRegex(run.log, r"The new layer lacks 41 faces of the input, counted from 0: 0, ")
+
+    def test_parameters_out_of_range_are_refused(self):
+        mesh = self.band()
+        for values, message in (({"Spanning": 2}, 'Parameter "Spanning": 2 is not one of its 2 choices'),
+                                ({"Spanning": 1}, '"Spanning" says which faces "AsPublished" removes')):
+            with self.subTest(**values):
+                self.assert_refused(self.close(mesh, **values), message)
+
+
 class CheckCompletion(MeshLabTest):
     def check(self, vertices, faces):
         path = self.folder / "checked.ply"

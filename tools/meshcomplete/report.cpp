@@ -54,8 +54,9 @@ QJsonObject filter_as_json(const FilterRecord& filter) {
   QJsonObject figures;
   for (const auto& figure : filter.report.figures)
     figures.insert(QString::fromStdString(figure.first), number(figure.second));
-  QJsonArray removed;
+  QJsonArray removed, split;
   for (const Index face : filter.report.removed_faces) removed.append(number(std::size_t{face}));
+  for (const Index vertex : filter.report.split_vertices) split.append(number(std::size_t{vertex}));
   return {{"name", filter.name},
           {"parameters", parameters},
           {"done", filter.done},
@@ -64,6 +65,7 @@ QJsonObject filter_as_json(const FilterRecord& filter) {
           {"notes", notes},
           {"figures", figures},
           {"removed_faces", removed},
+          {"split_vertices", split},
           {"log", QJsonArray::fromStringList(filter.log)}};
 }
 
