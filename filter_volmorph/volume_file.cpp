@@ -3,7 +3,7 @@
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/tools/Prune.h>
-#include <openvdb/tools/ValueTransformer.h>
+#include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
 #include <array>
@@ -80,30 +80,40 @@ openvdb::math::Transform::Ptr transform_of(const VolumeFrame& frame) {
   return transform;
 }
 
+/// -ramp for the unseen voxels of a leaf; the others of the leaf have +ramp already.
+void set_unseen(const openvdb::BoolTree::LeafNodeType& states, float ramp,
+                openvdb::FloatTree::LeafNodeType& distances) {
+  for (auto value = states.cbeginValueOff(); value; ++value)
+    if (!value.getValue()) distances.setValueOff(value.pos(), -ramp);
+}
+
 /// The distances, with -ramp and +ramp where none are stored.
 openvdb::FloatGrid::ConstPtr full_distances(const RangeVolume& volume, const Progress& progress) {
   const auto ramp = static_cast<float>(volume.frame().ramp);
+  const openvdb::BoolTree& states = volume.grids().state->tree();
   const openvdb::FloatTree& distances = volume.grids().distance->tree();
-  // True, empty, becomes 1; false, unseen, becomes 0.
-  const auto tree = std::make_shared<openvdb::FloatTree>(volume.grids().state->tree());
-  progress.update(0.2);
-  openvdb::tools::foreach (tree->beginValueOff(), [ramp](const openvdb::FloatTree::ValueOffIter& value) {
-    value.setValue(*value != 0 ? ramp : -ramp);
-  });
-  tree->root().setBackground(ramp, false);
+  const auto tree = std::make_shared<openvdb::FloatTree>(states, ramp, openvdb::TopologyCopy());
+  progress.update(0.3);
+  auto uniform = states.cbeginValueOff();
+  uniform.setMaxDepth(openvdb::BoolTree::ValueOffCIter::LEAF_DEPTH - 1);
+  for (; uniform; ++uniform)
+    if (!uniform.getValue()) tree->addTile(uniform.getLevel(), uniform.getCoord(), -ramp, false);
+  auto stored = distances.cbeginValueOn();
+  stored.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; stored; ++stored) tree->sparseFill(stored.getBoundingBox(), stored.getValue(), true);
+  for (auto leaf = distances.cbeginLeaf(); leaf; ++leaf) tree->touchLeaf(leaf->origin());
   progress.update(0.5);
 
-  auto tile = distances.cbeginValueOn();
-  tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) tree->sparseFill(tile.getBoundingBox(), *tile, true);
-  using Leaf = openvdb::FloatTree::LeafNodeType;
-  std::vector<std::pair<const Leaf*, Leaf*>> leaves;
-  for (auto leaf = distances.cbeginLeaf(); leaf; ++leaf)
-    leaves.emplace_back(&*leaf, tree->touchLeaf(leaf->origin()));
-  for_ranges(leaves.size(), leaves_per_range, progress, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (auto value = leaves[i].first->cbeginValueOn(); value; ++value)
-        leaves[i].second->setValueOn(value.pos(), *value);
+  const openvdb::tree::LeafManager<openvdb::FloatTree> leaves(*tree);
+  for_ranges(leaves.leafCount(), leaves_per_range, progress, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      auto& leaf = leaves.leaf(i);
+      if (const auto* known = states.probeConstLeaf(leaf.origin())) set_unseen(*known, ramp, leaf);
+      if (const auto* known = distances.probeConstLeaf(leaf.origin()))
+        for (auto value = known->cbeginValueOn(); value; ++value)
+          leaf.setValueOn(value.pos(), value.getValue());
+    }
+    progress.advance(0.5 * double(end - begin) / double(leaves.leafCount()));
   });
   progress.update(1);
   return openvdb::FloatGrid::create(tree);

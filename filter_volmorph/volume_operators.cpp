@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -339,12 +340,12 @@ class BlockExpander {
     targets = targets & bits_in_box(to_voxel(lowest), all_);
     if (!any_bit(targets)) return expansion;
     const WideBlock sources = sources_round(lowest);
+    known_.reset();
     for_each_bit(targets & sources.near(), [&](int x, int y, int z) {
       for (const NeighbourStep& to : steps_) {
         if (!sources.has(x + to.step.x(), y + to.step.y(), z + to.step.z())) continue;
         const Coord source = lowest.offsetBy(x, y, z) + to.step;
-        const Eigen::Vector3d normal = unpack_normal(normals_.getValue(source)).cast<double>();
-        if (std::abs(normal.dot(to.direction)) >= largest_cosine_) continue;
+        if (std::abs(normal_at(lowest, source).dot(to.direction)) >= largest_cosine_) continue;
         expansion.bits[x] |= std::uint64_t(1) << (block_size * y + z);
         expansion.sources.push_back(source);
         break;
@@ -366,9 +367,25 @@ class BlockExpander {
     return sources;
   }
 
+  /// The normal of a voxel of the block or one beside it. It is unpacked once: several targets ask for it.
+  const Eigen::Vector3d& normal_at(const Coord& lowest, const Coord& voxel) {
+    const Coord local = voxel - lowest.offsetBy(-1);
+    const int number = (local.x() * wide_size + local.y()) * wide_size + local.z();
+    if (!known_[number]) {
+      known_.set(number);
+      unpacked_[number] = unpack_normal(normals_.getValue(voxel)).cast<double>();
+    }
+    return unpacked_[number];
+  }
+
+  static constexpr int wide_size = block_size + 2;
+  static constexpr int wide_voxels = wide_size * wide_size * wide_size;
+
   StateReader states_;
   openvdb::Int32Grid::ConstAccessor normals_;
   VoxelBox all_, box_;
+  std::bitset<wide_voxels> known_;
+  std::array<Eigen::Vector3d, wide_voxels> unpacked_;
   std::vector<NeighbourStep> steps_ = steps_to_sources();
   /// cos 67.5 degrees. A direction and its opposite enclose angles of the same distance from 90.
   double largest_cosine_ = std::cos(67.5 / 180 * EIGEN_PI);
