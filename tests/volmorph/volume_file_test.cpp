@@ -91,6 +91,7 @@ TEST_F(VolumeFile, gives_back_every_bit) {
   expect_same_after_opening(small_volume(), path());
   expect_same_after_opening(with_filler_distances(small_volume()), path());
   expect_same_after_opening(sphere_volume(70), path());
+  expect_same_after_opening(uniform_seen_volume(), path());
   for (std::uint32_t seed = 0; seed < 6; ++seed)
     expect_same_after_opening(patchy_volume({{-140, -8, -9}, {150, 20, 15}}, seed), path());
   VolumeFrame frame;

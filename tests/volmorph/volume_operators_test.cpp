@@ -82,6 +82,12 @@ TEST(VolumeOperators, equal_the_dense_ones_at_distances_of_a_filler) {
   }
 }
 
+TEST(VolumeOperators, know_single_values_of_seen_blocks) {
+  const RangeVolume volume = uniform_seen_volume();
+  ASSERT_TRUE(volume.grids().normal->tree().hasActiveTiles());
+  EXPECT_GT(expect_same(volume, volume.frame().box, {expansion, dilation, erosion, expansion}), 0u);
+}
+
 TEST(VolumeOperators, work_on_single_voxels) {
   const DenseVolume dense = random_volume({{-9, -9, -9}, {2, 2, 2}}, 5);
   const RangeVolume volume = dense.volume();

@@ -1,5 +1,7 @@
 #include "tests/volmorph/volumes.h"
 
+#include <openvdb/tools/Prune.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -144,6 +146,26 @@ RangeVolume sphere_volume(int size) {
         }
       }
   return builder.finish();
+}
+
+RangeVolume uniform_seen_volume() {
+  DenseVolume dense(VolumeFrame{{0, 0, 0}, 1, 4, {{-5, -5, -5}, {28, 28, 28}}});
+  const VoxelBox seen{{0, 8, 8}, {15, 15, 23}};
+  dense.for_each([&](const VoxelIndex& at, const Voxel&) {
+    dense.at(at) = {VoxelState::unseen, -4, 0, {}};
+    if (seen.contains(at)) dense.at(at) = {VoxelState::seen, 0.5f, 2, Eigen::Vector3f(0, 0, 1)};
+  });
+  const RangeVolume volume = dense.volume();
+  VolumeGrids grids = volume.grids();
+  const auto pruned = [](const auto& grid) {
+    const auto copy = grid->deepCopy();
+    openvdb::tools::prune(copy->tree());
+    return copy;
+  };
+  grids.distance = pruned(grids.distance);
+  grids.weight = pruned(grids.weight);
+  grids.normal = pruned(grids.normal);
+  return RangeVolume(volume.frame(), std::make_shared<const VolumeGrids>(std::move(grids)));
 }
 
 RangeVolume with_filler_distances(const RangeVolume& volume) {

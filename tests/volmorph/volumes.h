@@ -45,6 +45,9 @@ VoxelBox random_box(const VoxelBox& round, std::uint32_t seed);
 /// size 1.
 RangeVolume sphere_volume(int size);
 
+/// Seen voxels, all the same, as single values of whole blocks in every grid, in an unseen volume.
+RangeVolume uniform_seen_volume();
+
 /// Distances of unseen and empty voxels next to the states' boundaries, as a filler stores them; states,
 /// weights and normals are shared.
 RangeVolume with_filler_distances(const RangeVolume& volume);
