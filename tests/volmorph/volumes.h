@@ -32,6 +32,26 @@ struct DenseVolume {
 /// without a normal. Ramp 4, voxel size 1.
 DenseVolume random_volume(const VoxelBox& box, std::uint32_t seed);
 
+/// Large uniform regions: boxes of one state each, laid over each other, one of them seen with random voxels
+/// like those of `random_volume`. Some regions fill whole leaves and tiles. Made without visiting each voxel.
+RangeVolume patchy_volume(const VoxelBox& box, std::uint32_t seed);
+
+/// A box with random corners, of which a part lies in the given one; often it reaches beyond that, and
+/// sometimes it is a single voxel.
+VoxelBox random_box(const VoxelBox& round, std::uint32_t seed);
+
+/// A band of seen voxels with normals round a sphere in the middle of a cube with so many voxels along an
+/// edge, unseen inside, empty outside, open where x < -0.8 radii: no voxel is seen there. Ramp 4, voxel
+/// size 1.
+RangeVolume sphere_volume(int size);
+
+/// Seen voxels, all the same, as single values of whole blocks in every grid, in an unseen volume.
+RangeVolume uniform_seen_volume();
+
+/// Distances of unseen and empty voxels next to the states' boundaries, as a filler stores them; states,
+/// weights and normals are shared.
+RangeVolume with_filler_distances(const RangeVolume& volume);
+
 /// The same in every bit.
 bool same_voxel(const Voxel& a, const Voxel& b);
 
