@@ -1,4 +1,4 @@
-// The MeshLab plugin of "Close Holes: Triangle Fan".
+// The MeshLab plugin of the "Range Volume" filters and of "Close Holes: Triangle Fan".
 #pragma once
 
 #include <QObject>

@@ -24,9 +24,13 @@ Eigen::Matrix4d matrix_of(const MeshModel& layer) {
   return matrix;
 }
 
-/// From one layer's coordinates to another's.
+/// From one layer's coordinates to another's, or to the project's.
 class Change {
  public:
+  explicit Change(const MeshModel& from)
+      : none_(matrix_of(from) == Eigen::Matrix4d::Identity()),
+        mirrors_(matrix_of(from).topLeftCorner<3, 3>().determinant() < 0),
+        matrix_(matrix_of(from)) {}
   Change(const MeshModel& from, const MeshModel& to) {
     const Eigen::Matrix4d source = matrix_of(from), target = matrix_of(to);
     none_ = source == target;
@@ -101,8 +105,9 @@ std::vector<Vector3> other_layer_points(const FilterRun& run, const char* parame
   return points_of(*layer, Change(*layer, *run.document.mm()));
 }
 
-LayerSurface layer_surface(const MeshModel& layer, const MeshModel& in) {
-  const Change change(layer, in);
+namespace {
+
+LayerSurface changed_surface(const MeshModel& layer, const Change& change) {
   LayerSurface surface;
   std::vector<Vector3> points = points_of(layer, change);
   if (layer.cm.fn == 0) {
@@ -125,6 +130,20 @@ LayerSurface layer_surface(const MeshModel& layer, const MeshModel& in) {
   }
   surface.mesh.vertices = std::move(points);
   return surface;
+}
+
+}  // namespace
+
+LayerSurface layer_surface(const MeshModel& layer, const MeshModel& in) {
+  return changed_surface(layer, Change(layer, in));
+}
+
+LayerSurface layer_surface(const MeshModel& layer) { return changed_surface(layer, Change(layer)); }
+
+Vector3 point_in_project(const MeshModel& layer, const Vector3& point) { return Change(layer)(point); }
+
+Vector3 direction_in_project(const MeshModel& layer, const Vector3& direction) {
+  return matrix_of(layer).topLeftCorner<3, 3>() * direction;
 }
 
 LayerSurface other_layer_surface(const FilterRun& run, const char* parameter) {

@@ -29,6 +29,13 @@ struct LayerSurface {
 /// point set with a point without normal, or when the matrix of the layer `in` cannot be inverted.
 LayerSurface layer_surface(const MeshModel& layer, const MeshModel& in);
 
+/// The same in the coordinates of the project: the layer's matrix is applied.
+LayerSurface layer_surface(const MeshModel& layer);
+
+/// A point or a direction of a layer in the coordinates of the project.
+Vector3 point_in_project(const MeshModel& layer, const Vector3& point);
+Vector3 direction_in_project(const MeshModel& layer, const Vector3& direction);
+
 /// The surface of the layer that a layer parameter names, in the coordinates of the current layer; empty when
 /// it names none. Throws CompletionError as `layer_surface`, and when it names the current layer.
 LayerSurface other_layer_surface(const FilterRun& run, const char* parameter);

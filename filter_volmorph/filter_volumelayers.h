@@ -1,0 +1,40 @@
+// Layers that hold a range volume, and layers that show a slice of one.
+#pragma once
+
+#include <QString>
+
+#include "common/host/filter_declaration.h"
+#include "filter_volmorph/range_volume.h"
+#include "filter_volmorph/volume_slice.h"
+
+namespace meshcomplete {
+namespace host {
+
+/// A new current layer that holds the volume. What it shows are the voxels at the observed surface, as points
+/// with normals, and with weights as quality.
+MeshModel& add_volume_layer(MeshDocument& document, const RangeVolume& volume, const QString& name);
+
+/// Gives a layer another volume, and shows that. The layer is the one of `volume_layer`.
+void replace_volume(MeshModel& layer, const RangeVolume& volume);
+
+/// Null where the layer holds none.
+const RangeVolume* volume_of(const MeshModel& layer);
+
+/// The layer that a filter works on: the current one, or the one that a current slice was cut out of. Throws
+/// CompletionError, which says how to get one, when there is none.
+MeshModel& volume_layer(FilterRun& run);
+
+/// A new current layer: one square for each pixel of the slice, in its colour, where the voxels are.
+MeshModel& add_slice_layer(MeshDocument& document, const MeshModel& volume, const VolumeSlice& slice,
+                           const QString& name);
+
+/// Whether the layer shows a slice.
+bool is_slice(const MeshModel& layer);
+
+/// The voxels under the selected faces of the slice layer that is given, or, without one, of the only slice
+/// of `volume` with a selection: their bounding rectangle, through the whole depth. Throws CompletionError
+/// when there is no such layer or no selected face.
+VoxelBox selected_box(const FilterRun& run, const MeshModel& volume, const MeshModel* slice);
+
+}  // namespace host
+}  // namespace meshcomplete
