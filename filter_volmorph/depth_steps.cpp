@@ -13,21 +13,6 @@ namespace {
 constexpr double default_edges = 4;
 constexpr double degree = M_PI / 180;
 
-double median_edge(const TriangleMesh& scan) {
-  std::vector<double> squares;
-  squares.reserve(3 * scan.triangles.size());
-  for (const Triangle& t : scan.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const double square = (scan.vertices[t[k]] - scan.vertices[t[(k + 1) % 3]]).squaredNorm();
-      if (std::isfinite(square)) squares.push_back(square);
-    }
-  }
-  if (squares.empty()) return 0;
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::sqrt(*middle);
-}
-
 /// The counter of the reason to drop a face, or of those kept.
 std::size_t& judge(const TriangleMesh& scan, const Triangle& t, const LineOfSight& line_of_sight,
                    double longest_edge, double least_cosine, DepthStepCounts& counts) {

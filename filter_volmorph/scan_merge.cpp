@@ -73,7 +73,11 @@ Kept keep(const RangeScan& scan, const std::string& name, const ScanMergeOptions
   figures.name = name;
   figures.line_of_sight = check_line_of_sight(scan.line_of_sight, name);
   if (scan.line_of_sight.kind == LineOfSight::Kind::own_axis) {
-    figures.line_of_sight = LineOfSight::parallel(estimate_axis(scan.mesh));
+    try {
+      figures.line_of_sight = LineOfSight::parallel(estimate_axis(scan.mesh));
+    } catch (const CompletionError& error) {
+      throw CompletionError(error.stage(), "In " + name + ": " + error.what());
+    }
   }
   progress.check();
   DepthSteps steps = drop_depth_steps(scan.mesh, figures.line_of_sight, name, options.depth_steps);
