@@ -39,7 +39,8 @@ std::string number(double x) {
   return text.data();
 }
 
-std::string gigabytes(double bytes) { return number(bytes / 1e9) + " GB"; }
+/// (More is written as this much, rather than as infinite.)
+std::string gigabytes(double bytes) { return number(std::min(bytes, 1e30) / 1e9) + " GB"; }
 
 Box bounds_of(const std::vector<const TriangleMesh*>& surfaces) {
   Box bounds;
