@@ -31,7 +31,8 @@ double ramp_of(const VolumeSizeOptions& options);
 /// Cost: O(triangles); the surface is only looked at coarsely.
 VolumeFrame choose_frame(const std::vector<const TriangleMesh*>& surfaces, const VolumeSizeOptions& options);
 
-/// Bytes for so many leaves with seen voxels, and the message of `choose_frame` when they are too many.
-void check_memory(std::size_t seen_leaves, const VolumeSizeOptions& options);
+/// Throws the error of `choose_frame` when so many blocks of eight voxels a side that may be near a surface
+/// make a volume that is too large: for callers that know it by now, before they fill them.
+void check_memory(std::size_t near_blocks, const VolumeSizeOptions& options);
 
 }  // namespace meshcomplete

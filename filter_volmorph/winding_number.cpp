@@ -1,0 +1,125 @@
+#include "filter_volmorph/winding_number.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/core/closest_point.h"
+
+namespace meshcomplete {
+namespace {
+
+constexpr std::size_t faces_in_leaf = 8;
+constexpr std::size_t fan_out = 4;
+
+/// Nodes farther than so many of their radii are one dipole. The first term left out of the series then adds
+/// up to less than `largest_error`, as Barill et al. measured (their figure 6, beta above 2).
+constexpr double far_radii = 2.5;
+
+double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
+  // Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle" (1983), equation 8.
+  const double x = a.norm(), y = b.norm(), z = c.norm();
+  return 2 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+}
+
+}  // namespace
+
+WindingNumber::WindingNumber(const TriangleMesh& mesh, const MeshTopology& topology) : mesh_(mesh) {
+  std::vector<Box> boxes;
+  for (const Triangle& t : mesh.triangles)
+    boxes.push_back(bounding_box(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+  order_ = spatial_order(boxes);
+  const auto finish = [](Node& node) {
+    if (node.area > 0) node.middle /= node.area;
+    for (int k = 0; k < 8; ++k) {
+      const auto corner = [&](std::size_t axis) {
+        return (k >> axis & 1 ? node.box.high : node.box.low)[axis];
+      };
+      node.radius = std::max(node.radius, (Vector3(corner(0), corner(1), corner(2)) - node.middle).norm());
+    }
+  };
+  std::vector<Node> nodes((order_.size() + faces_in_leaf - 1) / faces_in_leaf);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const Triangle& t = mesh.triangles[order_[i]];
+    const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Vector3 normal = (b - a).cross(c - a) / 2;
+    if (!normal.allFinite()) continue;
+    Node& node = nodes[i / faces_in_leaf];
+    node.normal += normal;
+    node.area += normal.norm();
+    node.middle += normal.norm() * (a + b + c) / 3;
+    node.box.include(boxes[order_[i]]);
+  }
+  for (Node& node : nodes) finish(node);
+  levels_.push_back(std::move(nodes));
+  while (levels_.back().size() > 1) {
+    const std::vector<Node>& fine = levels_.back();
+    std::vector<Node> coarse((fine.size() + fan_out - 1) / fan_out);
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      Node& node = coarse[i / fan_out];
+      node.normal += fine[i].normal;
+      node.area += fine[i].area;
+      node.middle += fine[i].area * fine[i].middle;
+      node.box.include(fine[i].box);
+    }
+    for (Node& node : coarse) finish(node);
+    levels_.push_back(std::move(coarse));
+  }
+
+  std::vector<Box> rims;
+  const auto half_edges = static_cast<Index>(topology.opposite.size());
+  const auto start = [&](Index h) { return mesh.triangles[h / 3][h % 3]; };
+  for (Index h = 0; h < half_edges; ++h) {
+    if (topology.opposite[h] < half_edges && start(topology.opposite[h]) != start(h)) continue;
+    const Vector3 &a = mesh.vertices[start(h)], &b = mesh.vertices[mesh.triangles[h / 3][(h % 3 + 1) % 3]];
+    rims.push_back(bounding_box(a, b, b));
+    rim_length_ += (b - a).norm();
+  }
+  if (!rims.empty()) {
+    std::vector<Box> sorted;
+    for (const Index i : spatial_order(rims)) sorted.push_back(rims[i]);
+    rims_ = BoxTree(std::move(sorted));
+  }
+}
+
+double WindingNumber::at(const Vector3& point) const { return at(point, levels_.size() - 1, 0) / (4 * M_PI); }
+
+double WindingNumber::at(const Vector3& point, std::size_t level, std::size_t index) const {
+  const Node& node = levels_[level][index];
+  const Vector3 way = node.middle - point;
+  const double distance = way.norm();
+  if (distance > far_radii * node.radius) {
+    return node.area > 0 ? node.normal.dot(way) / (distance * distance * distance) : 0;
+  }
+  double sum = 0;
+  if (level > 0) {
+    const std::size_t end = std::min((index + 1) * fan_out, levels_[level - 1].size());
+    for (std::size_t i = index * fan_out; i < end; ++i) sum += at(point, level - 1, i);
+    return sum;
+  }
+  const std::size_t end = std::min((index + 1) * faces_in_leaf, order_.size());
+  for (std::size_t i = index * faces_in_leaf; i < end; ++i) {
+    const Triangle& t = mesh_.triangles[order_[i]];
+    const double angle =
+        solid_angle(mesh_.vertices[t[0]] - point, mesh_.vertices[t[1]] - point, mesh_.vertices[t[2]] - point);
+    if (std::isfinite(angle)) sum += angle;
+  }
+  return sum;
+}
+
+double WindingNumber::steepest(const Vector3& point, double radius) const {
+  if (rims_.size() == 0) return 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  rims_.descend([&](const Box& box) { return squared_distance(box, point) < nearest; },
+                [&](std::size_t leaf) {
+                  nearest = std::min(nearest, squared_distance(rims_.leaf(leaf), point));
+                  return true;
+                });
+  const double distance = std::sqrt(nearest) - radius;
+  if (!(distance > 0)) return std::numeric_limits<double>::infinity();
+  return rim_length_ / (4 * M_PI * distance * distance);
+}
+
+}  // namespace meshcomplete
