@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/core/mesh_topology.h"
@@ -149,6 +150,17 @@ struct ScanView::Image {
   BlockView judge(const Range& u, const Range& v, const Range& depth, double ramp) const;
 };
 
+/// Above 0 to the left of the edge as the sensor sees it. The same number, negated, for the edge the other
+/// way round: that is why the ends are put into order.
+inline double ScanView::Image::edge(Index a, Index b, const Vector3& line) const {
+  const bool turned = a > b;
+  const Vector3 &p = (*points)[turned ? b : a], &q = (*points)[turned ? a : b];
+  const double side =
+      perspective ? -line.dot(p.cross(q))
+                  : line.x() * (p.y() - q.y()) + line.y() * (q.x() - p.x()) + (p.x() * q.y() - p.y() * q.x());
+  return turned ? -side : side;
+}
+
 /// The outline of a triangle, or of its first edge (`count` 2), as far as it is before a viewpoint.
 bool ScanView::Image::project(const Triangle& corners, int count, Outline& outline) const {
   outline.count = 0;
@@ -205,8 +217,8 @@ bool ScanView::Image::take(const TriangleMesh& scan) {
 }
 
 int ScanView::Image::number(double x, int axis, int level) const {
-  const double count = axis == 0 ? levels[0].columns : levels[0].rows;
-  return static_cast<int>(std::clamp(std::floor((x - low[axis]) / pixel), 0.0, count - 1)) >> level;
+  const int last = (axis == 0 ? levels[0].columns : levels[0].rows) - 1;
+  return static_cast<int>(std::clamp((x - low[axis]) / pixel, 0.0, static_cast<double>(last))) >> level;
 }
 
 /// `visit(column, row)` for the pixels that an outline may meet.
@@ -318,15 +330,6 @@ void ScanView::Image::build_levels() {
   }
 }
 
-/// Above 0 to the left of the edge as the sensor sees it. The same number, negated, for the edge the other
-/// way round: that is why the ends are put into order.
-double ScanView::Image::edge(Index a, Index b, const Vector3& line) const {
-  if (a > b) return -edge(b, a, line);
-  const Vector3 &p = (*points)[a], &q = (*points)[b];
-  if (perspective) return -line.dot(p.cross(q));
-  return line.x() * (p.y() - q.y()) + line.y() * (q.x() - p.x()) + (p.x() * q.y() - p.y() * q.x());
-}
-
 /// The first triangle of a pixel on a line of sight. The hit's distance is not one yet: it is the depth, for
 /// a viewpoint minus the part of `line` up to the hit.
 std::optional<SightHit> ScanView::Image::meet(const Vector3& line, int column, int row) const {
@@ -431,7 +434,7 @@ BlockView ScanView::look(const Vector3& middle, double half_side, double ramp) c
   return image_->judge(u, v, depth, ramp);
 }
 
-std::optional<SightHit> ScanView::hit(const Vector3& point) const {
+Sighting ScanView::sight(const Vector3& point, double ramp) const {
   const Image& image = *image_;
   const Vector3 away = point - image.origin;
   const Vector3 view = image.rotation * away;
@@ -444,9 +447,15 @@ std::optional<SightHit> ScanView::hit(const Vector3& point) const {
   }
   if (u < image.low.x() || u > image.high.x() || v < image.low.y() || v > image.high.y()) return {};
   const int column = image.number(u, 0, 0), row = image.number(v, 1, 0);
+  const Cell& cell = image.levels[0].at(column, row);
+  if (cell.cover == Cell::none || view.z() < cell.low - ramp - rounding_pad) return {};
+  if (cell.cover == Cell::all && view.z() > cell.high + ramp + rounding_pad) return {BlockView::empty, {}};
   std::optional<SightHit> hit = image.meet(image.perspective ? away : Vector3(u, v, 1), column, row);
-  if (hit) hit->distance = image.perspective ? (-hit->distance - 1) * away.norm() : view.z() - hit->distance;
-  return hit;
+  if (!hit) return {};
+  hit->distance = image.perspective ? (-hit->distance - 1) * away.norm() : view.z() - hit->distance;
+  if (hit->distance <= -ramp) return {};
+  if (hit->distance > ramp) return {BlockView::empty, {}};
+  return {BlockView::near, *hit};
 }
 
 std::size_t ScanView::memory() const {

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "common/core/mesh.h"
@@ -19,7 +18,7 @@ enum class BlockView : std::uint8_t {
   nothing,       ///< no line of sight to the surface goes through it, or it is behind
   empty,         ///< all of it is before the surface, farther than the ramp
   partly_empty,  ///< the same, but perhaps not for all of it
-  near           ///< perhaps within the ramp of the surface
+  near           ///< perhaps within the ramp of the surface, -ramp < distance <= ramp
 };
 
 /// Where a line of sight meets the surface first.
@@ -27,6 +26,12 @@ struct SightHit {
   double distance = 0;  ///< from there to the point asked for, along the line; positive towards the sensor
   Triangle corners{};   ///< of the triangle that is met
   std::array<double, 3> parts{};  ///< of the corners at the hit, at least 0; their sum is 1
+};
+
+/// What a scan can say of a point, and where it is `near`, why.
+struct Sighting {
+  BlockView view = BlockView::nothing;
+  SightHit hit;
 };
 
 /// One image of a scan: the lines of sight that are parallel, or those from a viewpoint that go through one
@@ -47,9 +52,9 @@ class ScanView {
   /// Of the cube of the given half side. Never says that more is known than is. Cost: O(1).
   BlockView look(const Vector3& middle, double half_side, double ramp) const;
 
-  /// Along the line of sight through a point; nothing when it is not in this image or meets nothing. Points
-  /// on a common edge of faces meet one of them: there are no cracks. Cost: O(faces in a pixel).
-  std::optional<SightHit> hit(const Vector3& point) const;
+  /// Of a single point, exactly: never `partly_empty`. Points on a common edge of faces meet one of them:
+  /// there are no cracks. Cost: O(faces in a pixel).
+  Sighting sight(const Vector3& point, double ramp) const;
 
   std::size_t memory() const;  ///< bytes
 

@@ -140,23 +140,21 @@ class Merger {
 
   /// What a view knows of one voxel.
   void add(const View& view, const Vector3& voxel, int at, Sums& sums) const {
-    const std::optional<SightHit> hit = view.view->hit(voxel);
-    if (!hit || hit->distance <= -ramp_) return;
+    const Sighting sighting = view.view->sight(voxel, ramp_);
     const auto i = static_cast<std::size_t>(at);
-    if (hit->distance > ramp_) {
-      sums.empty[i] = options_.carving;
-      return;
-    }
+    if (sighting.view == BlockView::empty) sums.empty[i] = sums.empty[i] || options_.carving;
+    if (sighting.view != BlockView::near) return;
+    const SightHit& hit = sighting.hit;
     double weight = 0;
     Vector3 normal = Vector3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
-      weight += hit->parts[k] * view.weights->weights[hit->corners[k]];
-      normal += hit->parts[k] * view.weights->normals[hit->corners[k]].cast<double>();
+      weight += hit.parts[k] * view.weights->weights[hit.corners[k]];
+      normal += hit.parts[k] * view.weights->normals[hit.corners[k]].cast<double>();
     }
-    const double behind = -hit->distance / ramp_;
+    const double behind = -hit.distance / ramp_;
     if (behind > options_.full_behind) weight *= (1 - behind) / (1 - options_.full_behind);
     sums.weight[i] += weight;
-    sums.distance[i] += weight * hit->distance;
+    sums.distance[i] += weight * hit.distance;
     sums.normal[i] += weight * normal;
   }
 

@@ -129,7 +129,7 @@ TEST(VoxelizeMesh, the_winding_number_is_that_of_the_solid_angle) {
   EXPECT_EQ(WindingNumber(closed, all).steepest(middle, 5), 0);
 }
 
-TEST(VoxelizeMesh, vertex_order_and_threads_do_not_matter) {
+TEST(VoxelizeMesh, is_the_same_in_every_bit_whatever_the_number_of_threads) {
   const TriangleMesh mesh = rough_sphere_with_ragged_holes(4, 3, 7);
   const DenseVolume first(voxelize_mesh(mesh, with_voxels(0.05)).volume);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
