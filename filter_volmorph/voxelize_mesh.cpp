@@ -185,10 +185,11 @@ class Voxelizer {
       for (int y = from[1]; y <= to[1]; ++y) {
         for (int z = from[2]; z <= to[2]; ++z) {
           const Vector3 at = (low + VoxelIndex(x, y, z)).cast<double>();
+          Nearest& best = nearest[static_cast<std::size_t>(VoxelBlock::number(x, y, z))];
+          if (squared_distance(box, at) > std::min(best.square, ramp_ * ramp_)) continue;
           const ClosestPoint point =
               closest_point(at, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
           const double square = (point.position - at).squaredNorm();
-          Nearest& best = nearest[static_cast<std::size_t>(VoxelBlock::number(x, y, z))];
           if (square < best.square || (square == best.square && triangle < best.triangle)) {
             best = {square, triangle, point};
           }

@@ -68,19 +68,32 @@ WindingNumber::WindingNumber(const TriangleMesh& mesh, const MeshTopology& topol
     levels_.push_back(std::move(coarse));
   }
 
-  std::vector<Box> rims;
+  build_rims(topology);
+}
+
+void WindingNumber::build_rims(const MeshTopology& topology) {
+  std::vector<Rim> rims;
+  std::vector<Box> boxes;
   const auto half_edges = static_cast<Index>(topology.opposite.size());
-  const auto start = [&](Index h) { return mesh.triangles[h / 3][h % 3]; };
+  const auto start = [&](Index h) { return mesh_.triangles[h / 3][h % 3]; };
   for (Index h = 0; h < half_edges; ++h) {
     if (topology.opposite[h] < half_edges && start(topology.opposite[h]) != start(h)) continue;
-    const Vector3 &a = mesh.vertices[start(h)], &b = mesh.vertices[mesh.triangles[h / 3][(h % 3 + 1) % 3]];
-    rims.push_back(bounding_box(a, b, b));
-    rim_length_ += (b - a).norm();
+    const Vector3 &a = mesh_.vertices[start(h)], &b = mesh_.vertices[mesh_.triangles[h / 3][(h % 3 + 1) % 3]];
+    boxes.push_back(bounding_box(a, b, b));
+    rims.push_back({boxes.back(), (b - a).norm()});
   }
-  if (!rims.empty()) {
-    std::vector<Box> sorted;
-    for (const Index i : spatial_order(rims)) sorted.push_back(rims[i]);
-    rims_ = BoxTree(std::move(sorted));
+  std::vector<Rim> sorted;
+  for (const Index i : spatial_order(boxes)) sorted.push_back(rims[i]);
+  if (sorted.empty()) return;
+  rims_.push_back(std::move(sorted));
+  while (rims_.back().size() > 1) {
+    const std::vector<Rim>& fine = rims_.back();
+    std::vector<Rim> coarse((fine.size() + fan_out - 1) / fan_out);
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      coarse[i / fan_out].box.include(fine[i].box);
+      coarse[i / fan_out].length += fine[i].length;
+    }
+    rims_.push_back(std::move(coarse));
   }
 }
 
@@ -110,16 +123,24 @@ double WindingNumber::at(const Vector3& point, std::size_t level, std::size_t in
 }
 
 double WindingNumber::steepest(const Vector3& point, double radius) const {
-  if (rims_.size() == 0) return 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  rims_.descend([&](const Box& box) { return squared_distance(box, point) < nearest; },
-                [&](std::size_t leaf) {
-                  nearest = std::min(nearest, squared_distance(rims_.leaf(leaf), point));
-                  return true;
-                });
-  const double distance = std::sqrt(nearest) - radius;
-  if (!(distance > 0)) return std::numeric_limits<double>::infinity();
-  return rim_length_ / (4 * M_PI * distance * distance);
+  return rims_.empty() ? 0 : steepest(point, radius, rims_.size() - 1, 0) / (4 * M_PI);
+}
+
+double WindingNumber::steepest(const Vector3& point, double radius, std::size_t level,
+                               std::size_t index) const {
+  const Rim& rim = rims_[level][index];
+  const double distance = std::sqrt(squared_distance(rim.box, point)) - radius;
+  double extent = 0;
+  for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, rim.box.high[k] - rim.box.low[k]);
+  if (level == 0 || distance > extent) {
+    return distance > 0 ? rim.length / (distance * distance) : std::numeric_limits<double>::infinity();
+  }
+  double sum = 0;
+  const std::size_t end = std::min((index + 1) * fan_out, rims_[level - 1].size());
+  for (std::size_t i = index * fan_out; i < end && std::isfinite(sum); ++i) {
+    sum += steepest(point, radius, level - 1, i);
+  }
+  return sum;
 }
 
 }  // namespace meshcomplete

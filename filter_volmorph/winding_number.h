@@ -27,7 +27,8 @@ class WindingNumber {
 
   /// An upper bound of how fast the number changes, per length, within `radius` of a point, on ways that do
   /// not cross the surface; infinite at a rim. 0 for a closed mesh. (The gradient of a sheet's solid angle is
-  /// the field of a current along its rim, at most length / distance^2.) Cost: O(log rim edges).
+  /// the field of a current along its rim: every edge adds at most its length / (4 pi distance^2).) Cost:
+  /// O(log rim edges) away from rims.
   double steepest(const Vector3& point, double radius) const;
 
  private:
@@ -40,13 +41,20 @@ class WindingNumber {
     Box box;
   };
 
+  /// Edges where the mesh ends, or is not oriented alike, next to each other in space.
+  struct Rim {
+    Box box;
+    double length = 0;
+  };
+
   double at(const Vector3& point, std::size_t level, std::size_t node) const;
+  double steepest(const Vector3& point, double radius, std::size_t level, std::size_t rim) const;
+  void build_rims(const MeshTopology& topology);
 
   const TriangleMesh& mesh_;
   std::vector<Index> order_;               ///< faces, neighbours in space after another
   std::vector<std::vector<Node>> levels_;  ///< the first over eight faces each, the next over four nodes each
-  BoxTree rims_;                           ///< of edges where the mesh ends, or is not oriented alike
-  double rim_length_ = 0;
+  std::vector<std::vector<Rim>> rims_;     ///< single edges first, the next over four each
 };
 
 }  // namespace meshcomplete
