@@ -41,7 +41,7 @@ struct DepthSteps {
 void check_options(const DepthStepOptions& options);
 
 /// The faces of a scan that the scanner saw as surface. `line_of_sight` is parallel or a viewpoint; `name`
-/// is what messages call the scan. Source: Curless and Levoy 1996, section 3 (tessellation of range images).
+/// is what messages call the scan. Source: Curless and Levoy 1996 (tessellation of range images).
 /// Throws CompletionError when no face is left, saying which limit dropped most. Cost: O(faces).
 DepthSteps drop_depth_steps(const TriangleMesh& scan, const LineOfSight& line_of_sight,
                             const std::string& name, const DepthStepOptions& options = {});

@@ -70,11 +70,11 @@ void check_options(const ScanMergeOptions& options);
 /// `full_behind` is to 0; keep the ramp below half of the thinnest wall.
 ///
 /// Source: Curless and Levoy, "A Volumetric Method for Building Complex Models from Range Images" (1996),
-/// sections 3 (merging) and 4 (carving). The volume is the same in every bit whatever the number of threads.
-/// Throws CompletionError when there are no scans, a scan has no faces or loses all to the depth-step limits,
-/// a viewpoint is within the ramp of its scan, or the volume needs too much memory; and Cancelled.
-/// Cost: O(faces + scans * voxels within the ramp or at the edge of what was carved); memory likewise, never
-/// the voxels of the box.
+/// sections 3 (merging) and 4 (space carving). The volume is the same in every bit whatever the number of
+/// threads. Throws CompletionError when there are no scans, a scan has no faces or loses all to the
+/// depth-step limits, a viewpoint is within the ramp of its scan, or the volume needs too much memory; and
+/// Cancelled. Cost: O(faces + scans * voxels within the ramp or at the edge of what was carved); memory
+/// likewise, never the voxels of the box.
 ScanMerge merge_scans(const std::vector<RangeScan>& scans, const ScanMergeOptions& options,
                       const Progress& progress = Progress());
 

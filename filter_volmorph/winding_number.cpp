@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t faces_in_leaf = 8;
 constexpr std::size_t fan_out = 4;
 
-/// Nodes farther than so many of their radii are one dipole. The first term left out of the series then adds
-/// up to less than `largest_error`, as Barill et al. measured (their figure 6, beta above 2).
+/// Nodes farther than so many of their radii are one dipole. The terms left out are smaller than that one by
+/// the square of this, and of both signs over a mesh: the sum stays well within `largest_error`.
 constexpr double far_radii = 2.5;
 
 double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
