@@ -1,0 +1,308 @@
+#include "filter_volmorph/voxelize_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/core/closest_point.h"
+#include "common/core/error.h"
+#include "common/core/threads.h"
+#include "common/core/triangle_blocks.h"
+#include "filter_volmorph/surface_signs.h"
+#include "filter_volmorph/voxel_blocks.h"
+#include "filter_volmorph/winding_number.h"
+
+namespace meshcomplete {
+namespace {
+
+constexpr int largest_side = 4096;
+constexpr std::size_t blocks_at_once = 16;
+
+TriangleMesh in_voxels(const TriangleMesh& mesh, const VolumeFrame& frame) {
+  TriangleMesh result;
+  for (const Vector3& vertex : mesh.vertices) result.vertices.push_back(frame.voxel(vertex));
+  result.triangles = mesh.triangles;
+  return result;
+}
+
+/// Without faces that are no triangles. Those with three vertices on a line stay: without them their
+/// neighbours would seem to end there.
+TriangleMesh usable(const TriangleMesh& mesh) {
+  TriangleMesh result;
+  result.vertices = mesh.vertices;
+  bool area = false;
+  for (const Triangle& t : mesh.triangles) {
+    const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    if (!a.allFinite() || !b.allFinite() || !c.allFinite()) continue;
+    result.triangles.push_back(t);
+    area = area || (b - a).cross(c - a).squaredNorm() > 0;
+  }
+  if (area) return result;
+  throw CompletionError("reading the mesh",
+                        "There is no surface to voxelize: the mesh has no faces with an "
+                        "area. A point cloud has to be triangulated first.");
+}
+
+struct Block {
+  VoxelIndex low;
+  bool near = false;  ///< a surface may be within the ramp of some voxel
+};
+
+/// The nearest point of the mesh to a voxel.
+struct Nearest {
+  double square = std::numeric_limits<double>::infinity();
+  Index triangle = 0;
+  ClosestPoint point;
+};
+using NearestPoints = std::array<Nearest, VoxelBlock::count>;
+
+class Voxelizer {
+ public:
+  Voxelizer(const TriangleMesh& mesh, const VolumeFrame& frame)
+      : mesh_(mesh),
+        frame_(frame),
+        ramp_(frame.ramp / frame.voxel_size),
+        topology_(build_topology(mesh)),
+        triangles_(mesh),
+        winding_(mesh, topology_),
+        signs_(mesh, topology_),
+        blocks_(frame) {}
+
+  std::size_t rim_edges() const { return topology_.boundary_half_edges.size(); }
+
+  RangeVolume run(const VolumeSizeOptions& size, const Progress& progress) {
+    std::vector<Block> blocks = first_blocks();
+    const Progress descent = progress.part(0, 0.2, "finding the blocks near the surface");
+    for (int side = first_side_; !blocks.empty(); side /= 2) {
+      blocks = undecided(blocks, side, descent);
+      if (side == VoxelBlock::side) break;
+      blocks = halves(blocks, side, descent);
+      descent.update(static_cast<double>(VoxelBlock::side) / side);
+    }
+    check_memory(static_cast<std::size_t>(
+                     std::count_if(blocks.begin(), blocks.end(), [](const Block& b) { return b.near; })),
+                 size);
+    const Progress filling = progress.part(0.2, 0.95, "measuring distances");
+    for_ranges(blocks.size(), blocks_at_once, filling, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        blocks_.add(fill(blocks[i], filling));
+        filling.advance(1.0 / static_cast<double>(blocks.size()));
+      }
+    });
+    blocks = {};
+    RangeVolume volume = blocks_.finish();
+    progress.update(1);
+    return volume;
+  }
+
+ private:
+  std::vector<Block> first_blocks() {
+    first_side_ = VoxelBlock::side;
+    while (first_side_ < largest_side && first_side_ <= frame_.box.high.maxCoeff()) first_side_ *= 2;
+    std::vector<Block> result;
+    const VoxelIndex& high = frame_.box.high;
+    for (int x = 0; x <= high.x(); x += first_side_)
+      for (int y = 0; y <= high.y(); y += first_side_)
+        for (int z = 0; z <= high.z(); z += first_side_) result.push_back({{x, y, z}});
+    return result;
+  }
+
+  /// The box of a block's voxel middles, and of all that is within the ramp of them.
+  Box reach(const VoxelIndex& low, int side) const {
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[static_cast<std::size_t>(axis)] = low[axis] - ramp_;
+      box.high[static_cast<std::size_t>(axis)] = low[axis] + side - 1 + ramp_;
+    }
+    return box;
+  }
+
+  /// Whether all points of a ball without surface are inside, or all outside; nothing when it is not sure.
+  std::optional<bool> inside(const Vector3& middle, double radius, double way) const {
+    const double change = winding_.steepest(middle, radius);
+    if (!std::isfinite(change)) return {};
+    const double winding = winding_.at(middle);
+    if (!(std::abs(winding - 0.5) > way * change + WindingNumber::largest_error)) return {};
+    return winding > 0.5;
+  }
+
+  std::vector<Block> undecided(std::vector<Block>& blocks, int side, const Progress& progress) {
+    std::vector<char> decided(blocks.size(), 0);
+    for_ranges(blocks.size(), blocks_at_once, progress, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        progress.check();
+        Block& block = blocks[i];
+        triangles_.visit(reach(block.low, side), [&](Index) {
+          block.near = true;
+          return false;
+        });
+        if (block.near) continue;
+        const double half = (side - 1) / 2.0, radius = std::sqrt(3) * half;
+        const Vector3 middle = block.low.cast<double>().array() + half;
+        const std::optional<bool> in = inside(middle, radius, radius);
+        decided[i] = in.has_value();
+        if (in && !*in) blocks_.add_empty(block.low, side);
+      }
+    });
+    std::vector<Block> result;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      if (!decided[i]) result.push_back(blocks[i]);
+    return result;
+  }
+
+  std::vector<Block> halves(const std::vector<Block>& blocks, int side, const Progress& progress) const {
+    std::vector<Block> result;
+    progress.check();
+    for (const Block& block : blocks) {
+      for (int k = 0; k < 8; ++k) {
+        const VoxelIndex low = block.low + side / 2 * VoxelIndex(k >> 2, k >> 1 & 1, k & 1);
+        if (frame_.box.contains(low)) result.push_back({low});
+      }
+    }
+    return result;
+  }
+
+  static Vector3 position(const VoxelIndex& low, int i) {
+    return (low + VoxelIndex(i / 64, i / 8 % 8, i % 8)).cast<double>();
+  }
+
+  /// Takes note of a triangle at the voxels within the ramp of its box.
+  void measure(Index triangle, const VoxelIndex& low, NearestPoints& nearest) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    const Box box = triangles_.triangle_box(triangle);
+    int from[3], to[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double first = low[static_cast<int>(axis)], last = first + VoxelBlock::side - 1;
+      from[axis] = static_cast<int>(std::ceil(std::max(box.low[axis] - ramp_, first) - first));
+      to[axis] = static_cast<int>(std::floor(std::min(box.high[axis] + ramp_, last) - first));
+    }
+    for (int x = from[0]; x <= to[0]; ++x) {
+      for (int y = from[1]; y <= to[1]; ++y) {
+        for (int z = from[2]; z <= to[2]; ++z) {
+          const Vector3 at = (low + VoxelIndex(x, y, z)).cast<double>();
+          Nearest& best = nearest[static_cast<std::size_t>(VoxelBlock::number(x, y, z))];
+          if (squared_distance(box, at) > std::min(best.square, ramp_ * ramp_)) continue;
+          const ClosestPoint point =
+              closest_point(at, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+          const double square = (point.position - at).squaredNorm();
+          if (square < best.square || (square == best.square && triangle < best.triangle)) {
+            best = {square, triangle, point};
+          }
+        }
+      }
+    }
+  }
+
+  VoxelBlock fill(const Block& source, const Progress& progress) const {
+    VoxelBlock block;
+    block.low = source.low;
+    NearestPoints nearest;
+    if (source.near) {
+      std::size_t seen = 0;
+      triangles_.visit(reach(source.low, VoxelBlock::side), [&](Index triangle) {
+        if (++seen % 1024 == 0) progress.check();
+        measure(triangle, source.low, nearest);
+        return true;
+      });
+    }
+    std::array<bool, VoxelBlock::count> open{};  // the surface is not within the ramp
+    for (int i = 0; i < VoxelBlock::count; ++i) {
+      open[static_cast<std::size_t>(i)] = !(nearest[static_cast<std::size_t>(i)].square <= ramp_ * ramp_);
+      if (!open[static_cast<std::size_t>(i)]) see(nearest[static_cast<std::size_t>(i)], i, block);
+    }
+    const double half = (VoxelBlock::side - 1) / 2.0;
+    const Vector3 middle = source.low.cast<double>().array() + half;
+    const double change = winding_.steepest(middle, std::sqrt(3) * half);
+    for (int i = 0; i < VoxelBlock::count; ++i)
+      if (open[static_cast<std::size_t>(i)]) decide(i, change, open, block);
+    return block;
+  }
+
+  VoxelState side_of(const Vector3& at) const {
+    return winding_.inside(at) ? VoxelState::unseen : VoxelState::empty;
+  }
+
+  /// A voxel within the ramp of the surface or of its rim.
+  void see(const Nearest& nearest, int i, VoxelBlock& block) const {
+    const auto at = static_cast<std::size_t>(i);
+    const Vector3 voxel = position(block.low, i);
+    const SurfacePlace place = signs_.place(nearest.triangle, nearest.point);
+    if (place == SurfacePlace::rim) {
+      block.state[at] = side_of(voxel);
+      return;
+    }
+    const Vector3 normal = signs_.normal(nearest.triangle, nearest.point);
+    const bool negative = place == SurfacePlace::ambiguous ? winding_.inside(voxel)
+                                                           : (voxel - nearest.point.position).dot(normal) < 0;
+    const double distance = std::sqrt(nearest.square) * frame_.voxel_size;
+    const float ramp = static_cast<float>(frame_.ramp);
+    block.state[at] = VoxelState::seen;
+    block.distance[at] = std::clamp(static_cast<float>(negative ? -distance : distance), -ramp, ramp);
+    block.weight[at] = 1;
+    if (!normal.isZero()) block.normal[at] = pack_normal(normal.cast<float>());
+  }
+
+  /// The side of a voxel away from the surface, and of those joined to it within the block by a way that is
+  /// too short for the winding number, which changes by `change` a voxel, to pass a half.
+  void decide(int start, double change, std::array<bool, VoxelBlock::count>& open, VoxelBlock& block) const {
+    const double winding = winding_.at(position(block.low, start));
+    const VoxelState side = winding > 0.5 ? VoxelState::unseen : VoxelState::empty;
+    const double room = std::abs(winding - 0.5) - WindingNumber::largest_error;
+    std::array<short, VoxelBlock::count> queue, steps;
+    std::size_t begin = 0, end = 0;
+    const auto take = [&](int i, int way) {
+      if (!open[static_cast<std::size_t>(i)] || (way > 0 && !(way * change < room))) return;
+      open[static_cast<std::size_t>(i)] = false;
+      block.state[static_cast<std::size_t>(i)] = side;
+      steps[end] = static_cast<short>(way);
+      queue[end++] = static_cast<short>(i);
+    };
+    take(start, 0);
+    for (; begin < end; ++begin) {
+      const int i = queue[begin];
+      for (const int step : {64, 8, 1}) {
+        const int place = i / step % VoxelBlock::side;
+        if (place > 0) take(i - step, steps[begin] + 1);
+        if (place + 1 < VoxelBlock::side) take(i + step, steps[begin] + 1);
+      }
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  const VolumeFrame& frame_;
+  double ramp_;  ///< voxels
+  MeshTopology topology_;
+  TriangleBlocks triangles_;
+  WindingNumber winding_;
+  SurfaceSigns signs_;
+  VoxelBlocks blocks_;
+  int first_side_ = VoxelBlock::side;
+};
+
+}  // namespace
+
+VoxelizedMesh voxelize_mesh(const TriangleMesh& mesh, const VolumeSizeOptions& options,
+                            const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  check_options(options);
+  const TriangleMesh solid = usable(mesh);
+  const VolumeFrame frame = choose_frame({&solid}, options);
+  progress.check();
+  const TriangleMesh in_frame = in_voxels(solid, frame);
+  Voxelizer voxelizer(in_frame, frame);
+  const double prepared = seconds();
+  VoxelizedMesh result{voxelizer.run(options, progress), {}, voxelizer.rim_edges(), {}};
+  result.counts = result.volume.counts();
+  result.stage_seconds = {{"preparing the mesh", prepared}, {"measuring distances", seconds() - prepared}};
+  return result;
+}
+
+}  // namespace meshcomplete
