@@ -109,8 +109,8 @@ RangeVolume diffuse(const RangeVolume& volume, const VoxelBox& box, const Diffus
   std::vector<DiffusionBlock> blocks = diffusion_blocks(volume, box.common(volume.frame().box), options.reach,
                                                         options.normals, progress.part(0, 0.1, stage));
   if (options.normals)
-    make_weights_by_normals(blocks, options.reach, progress.part(0.1, 0.3, "spreading the normals"));
-  const Progress stepping = progress.part(0.3, 0.95, stage);
+    make_weights_by_normals(blocks, options.reach, progress.part(0.1, 0.45, "spreading the normals"));
+  const Progress stepping = progress.part(options.normals ? 0.45 : 0.1, 0.95, stage);
   const std::vector<std::size_t> changing = blocks_to_fill(blocks);
   std::vector<Filled> filled(changing.size());
   const Diffusion diffusion(volume.frame(), options);
