@@ -18,10 +18,6 @@ constexpr int neighbours = 26;
 // neighbours are known, theirs is the distance.
 constexpr double weight_across = 0.01;
 
-// Power of sin^2: the higher, the less of one surface reaches another that is parallel to it and near. With 4
-// two faces six voxels apart stay apart over a gap of 24; with 2 they merge.
-constexpr int sharpness = 4;
-
 // Sweeps of relaxing the tensors for each step of reach. Fronts carry the tensors of the nearest rim on
 // unturned, which closes a round hole with a cone; relaxed, they turn evenly from rim to rim. A sweep moves
 // them by about a voxel, so that this is enough for what lies across half a hole to tell.
@@ -65,10 +61,14 @@ float share_along(const NormalTensor& tensor, const Neighbour& neighbour) {
   return std::clamp(sum / full_tensor, 0.f, 1.f);
 }
 
+// The share across the normals to its fourth power: the higher, the less of a surface reaches another one
+// that is parallel and near. So two faces six voxels apart stay apart over a gap of 24; with the square they
+// merge.
 float weight_of(const NormalTensor& tensor, const Neighbour& neighbour) {
   const float perpendicular = 1 - share_along(tensor, neighbour);
+  const float squared = perpendicular * perpendicular;
   const float least = float(weight_across);
-  return neighbour.nearness * (least + (1 - least) * std::pow(perpendicular, sharpness));
+  return neighbour.nearness * (least + (1 - least) * squared * squared);
 }
 
 // No direction is known: what a tensor of all directions alike says.

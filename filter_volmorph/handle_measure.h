@@ -27,12 +27,11 @@ struct HandleReport {
 };
 
 /// Holes of the mesh count as covered: a loop round a hole is no handle. One loop is taken of every pair that
-/// belongs to a handle (they cross once), the shorter one, and no two of those chosen cross: a tiny tunnel in
-/// a large ring is one tiny handle and one large one. Lengths are upper bounds: the loops are the shortest of
-/// a basis of paths from one vertex of each component, without the way there. Deterministic. Cost: O(n log n)
-/// for n faces, and O(g^3 / 64) for the most handles g whose loops cross each other. Source: Eppstein,
-/// Dynamic generators of topologically embedded graphs (2003); Erickson and Whittlesey, Greedy optimal
-/// homotopy and homology generators (2005).
+/// belongs to a handle (they cross once), the shorter one, and the handles are independent: a tiny tunnel in
+/// a large ring is one tiny handle and one large one. Lengths are of paths along edges, and upper bounds:
+/// loops of a basis (`loop_basis`), made as short as can be from where they are (`LoopShortener`).
+/// Deterministic. Cost: O(n log n) for n faces, and for each handle a search round its loop; with many
+/// handles O(g^2) besides.
 HandleReport measure_handles(const TriangleMesh& mesh, const Progress& progress = Progress());
 
 }  // namespace meshcomplete

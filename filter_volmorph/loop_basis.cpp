@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <queue>
-#include <stdexcept>
+#include <utility>
 
 namespace meshcomplete {
 namespace {
@@ -170,76 +170,6 @@ SurfaceLoop loop_through(const TriangleMesh& mesh, const CappedSurface& surface,
   return loop;
 }
 
-// The crossings of some loops, all connected, as rows of bits. Loops by ascending length.
-class CrossingMatrix {
-  using Row = std::vector<std::uint64_t>;
-
- public:
-  explicit CrossingMatrix(const std::vector<Index>& loops)
-      : loops_(loops),
-        words_((loops.size() + 63) / 64),
-        rows_(loops.size(), Row(words_, 0)),
-        sums_(loops.size(), Row(words_, 0)) {
-    for (std::size_t i = 0; i < loops.size(); ++i) sums_[i][i / 64] = std::uint64_t(1) << i % 64;
-  }
-
-  void set(std::size_t i, std::size_t j) {
-    rows_[i][j / 64] |= std::uint64_t(1) << j % 64;
-    rows_[j][i / 64] |= std::uint64_t(1) << i % 64;
-  }
-
-  void pair_up(const Progress& progress, std::vector<LoopPair>& pairs) {
-    std::vector<char> used(rows_.size(), 0);
-    for (std::size_t a = 0; a < rows_.size(); ++a) {
-      if (used[a]) continue;
-      const std::size_t b = first_crossing(a);
-      used[a] = used[b] = 1;
-      progress.check();
-      pairs.push_back({loops_[a], loops_[b], summands(a), summands(b)});
-      lead_round(a, b);
-    }
-  }
-
- private:
-  bool crosses(std::size_t i, std::size_t j) const { return (rows_[i][j / 64] >> j % 64 & 1) != 0; }
-
-  std::size_t first_crossing(std::size_t a) const {
-    for (std::size_t j = 0; j < rows_.size(); ++j)
-      if (crosses(a, j)) return j;
-    throw std::logic_error("a loop that nothing crosses is no part of a basis");
-  }
-
-  std::vector<Index> summands(std::size_t i) const {
-    std::vector<Index> result;
-    for (std::size_t j = 0; j < loops_.size(); ++j)
-      if (sums_[i][j / 64] >> j % 64 & 1) result.push_back(loops_[j]);
-    return result;
-  }
-
-  // What crosses a is continued along b and the other way round, so that it crosses neither any more.
-  void lead_round(std::size_t a, std::size_t b) {
-    const Row row_a = rows_[a], row_b = rows_[b];
-    const auto add = [&](Row& row, const Row& other) {
-      for (std::size_t word = 0; word < words_; ++word) row[word] ^= other[word];
-    };
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (row_b[i / 64] >> i % 64 & 1) {
-        add(rows_[i], row_a);
-        if (i != a) add(sums_[i], sums_[a]);
-      }
-      if (row_a[i / 64] >> i % 64 & 1) {
-        add(rows_[i], row_b);
-        if (i != b) add(sums_[i], sums_[b]);
-      }
-    }
-  }
-
-  std::vector<Index> loops_;
-  std::size_t words_;
-  std::vector<Row> rows_;
-  std::vector<Row> sums_;  // of which loops each of them is the sum
-};
-
 }  // namespace
 
 std::vector<SurfaceLoop> loop_basis(const TriangleMesh& mesh, const CappedSurface& surface,
@@ -265,58 +195,6 @@ std::vector<Index> edges_beside(const CappedSurface& surface, const SurfaceLoop&
       edges.push_back(h);
   }
   return edges;
-}
-
-std::vector<std::pair<Index, Index>> crossing_loops(const CappedSurface& surface,
-                                                    const std::vector<SurfaceLoop>& loops,
-                                                    const Progress& progress) {
-  using EdgeOfLoop = std::pair<Index, Index>;
-  const auto edge_of = [&](Index h) { return std::min(h, surface.opposite[h]); };
-  std::vector<EdgeOfLoop> edges;
-  for (Index loop = 0; loop < loops.size(); ++loop)
-    for (const Index h : loops[loop].half_edges) edges.push_back({edge_of(h), loop});
-  std::sort(edges.begin(), edges.end());
-  std::vector<std::pair<Index, Index>> crossings;
-  for (Index loop = 0; loop < loops.size(); ++loop) {
-    progress.update(double(loop) / double(loops.size()));
-    std::vector<Index> met;
-    for (const Index h : edges_beside(surface, loops[loop]))
-      for (auto at = std::lower_bound(edges.begin(), edges.end(), EdgeOfLoop(edge_of(h), 0));
-           at != edges.end() && at->first == edge_of(h); ++at)
-        met.push_back(at->second);
-    std::sort(met.begin(), met.end());
-    for (std::size_t from = 0, to = 0; from < met.size(); from = to) {
-      while (to < met.size() && met[to] == met[from]) ++to;
-      if ((to - from) % 2 == 1 && loop < met[from]) crossings.push_back({loop, met[from]});
-    }
-  }
-  return crossings;
-}
-
-std::vector<LoopPair> pair_loops(std::size_t loops, const std::vector<std::pair<Index, Index>>& crossings,
-                                 const Progress& progress) {
-  UnionFind groups(loops);
-  for (const auto& [a, b] : crossings) groups.unite(a, b);
-  std::vector<std::vector<Index>> members(loops);
-  std::vector<Index> place(loops);
-  for (Index loop = 0; loop < loops; ++loop) {
-    std::vector<Index>& group = members[groups.root(loop)];
-    place[loop] = Index(group.size());
-    group.push_back(loop);
-  }
-  std::vector<std::vector<std::pair<Index, Index>>> within(loops);
-  for (const auto& [a, b] : crossings) within[groups.root(a)].push_back({a, b});
-  std::vector<LoopPair> pairs;
-  for (Index group = 0; group < loops; ++group) {
-    if (members[group].empty()) continue;
-    progress.update(double(group) / double(loops));
-    CrossingMatrix matrix(members[group]);
-    for (const auto& [a, b] : within[group]) matrix.set(place[a], place[b]);
-    matrix.pair_up(progress, pairs);
-  }
-  std::sort(pairs.begin(), pairs.end(),
-            [](const LoopPair& a, const LoopPair& b) { return a.first < b.first; });
-  return pairs;
 }
 
 }  // namespace meshcomplete

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "filter_volmorph/loop_basis.h"
 #include "filter_volmorph/surface_extraction.h"
 #include "tests/support/cancelling.h"
 #include "tests/support/meshes.h"
@@ -73,7 +72,7 @@ TEST(HandleMeasure, finds_the_loop_through_a_fat_torus) {
   ASSERT_EQ(fat.size(), 1u);
   EXPECT_GE(fat[0].length, 2 * M_PI * 0.2 * 0.99);
   EXPECT_LE(fat[0].length, 2 * M_PI * 0.2 * 1.5);
-  EXPECT_LT(fat[0].centre.norm(), 0.2);
+  EXPECT_LT(fat[0].centre.norm(), 0.3);
 }
 
 TEST(HandleMeasure, measures_each_of_several_handles) {
@@ -170,24 +169,6 @@ TEST(HandleMeasure, says_nothing_where_there_is_no_genus) {
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
   EXPECT_FALSE(measure_handles(turned).handles.has_value());
   EXPECT_TRUE(measure_handles(TriangleMesh()).handles->empty());
-}
-
-TEST(HandleMeasure, leads_loops_round_those_before) {
-  // 0 and 1 are a pair, so are 2 and 3; 2 goes along 0 as well, and so crosses 1.
-  const std::vector<LoopPair> pairs = pair_loops(4, {{0, 1}, {1, 2}, {2, 3}});
-  ASSERT_EQ(pairs.size(), 2u);
-  EXPECT_EQ(pairs[0].first, 0u);
-  EXPECT_EQ(pairs[0].second, 1u);
-  EXPECT_EQ(pairs[0].first_sum, (std::vector<Index>{0}));
-  EXPECT_EQ(pairs[1].first, 2u);
-  EXPECT_EQ(pairs[1].second, 3u);
-  EXPECT_EQ(pairs[1].first_sum, (std::vector<Index>{0, 2}));
-  EXPECT_EQ(pairs[1].second_sum, (std::vector<Index>{3}));
-  const std::vector<LoopPair> apart = pair_loops(4, {{0, 3}, {1, 2}});
-  ASSERT_EQ(apart.size(), 2u);
-  EXPECT_EQ(apart[0].second, 3u);
-  EXPECT_EQ(apart[1].first, 1u);
-  EXPECT_TRUE(pair_loops(0, {}).empty());
 }
 
 TEST(HandleMeasure, is_the_same_for_any_number_of_threads) {
