@@ -8,10 +8,14 @@ namespace meshcomplete {
 namespace {
 
 // Vertices of a loop, evenly spread, through which a shorter one is looked for.
-constexpr std::size_t places = 6;
+constexpr std::size_t places = 4;
 
 // Of a loop's length: what has to be gained for another round. Rounding is far below it.
 constexpr double least_gain = 1e-3;
+
+// Of vertices that a search visits: all that a loop of about a hundred edges can be shortened by. Larger
+// loops are no spurious handles, and searching all round them would take longer than all else.
+constexpr std::size_t most_settled = 20000;
 
 constexpr Index none = 0xffffffffu;
 constexpr std::size_t between_checks = 1 << 12;
@@ -74,7 +78,7 @@ bool LoopShortener::shorten_through(Index vertex, SurfaceLoop& loop, const Progr
   Meeting best{loop.length};
   std::size_t settled = 0;
   // Two halves of a loop shorter than the best meet before either is half as long.
-  while (!queue.empty() && 2 * queue.top().first < best.length) {
+  while (!queue.empty() && 2 * queue.top().first < best.length && settled < most_settled) {
     const auto [distance, node] = queue.top();
     queue.pop();
     if (distance > distance_[node]) continue;

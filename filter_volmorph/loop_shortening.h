@@ -15,11 +15,12 @@ class LoopShortener {
  public:
   LoopShortener(const TriangleMesh& mesh, const CappedSurface& surface);
 
-  /// The shortest loop that crosses the edges of `crossed` an odd number of times and goes through one of
-  /// some vertices of `loop`, which does so itself; and so on from that loop, while it gets shorter.
-  /// `crossed`: the edges that a closed curve crosses, each by any of its half-edges; those named twice count
-  /// as not crossed. Cost: O(m log m) for the m vertices that are no farther than half the loop's length, a
-  /// few times.
+  /// A loop that crosses the edges of `crossed` an odd number of times and goes through one of
+  /// some vertices of `loop`, which does so itself: the shortest one if that has no more than about a hundred
+  /// edges, and none that is longer than `loop`; and so on from that loop, while it gets shorter. `crossed`:
+  /// the edges that a closed curve crosses, each by any of its half-edges; those named twice count as not
+  /// crossed. Cost: O(m log m) for the m vertices that are no farther than half the loop's length, a few
+  /// times.
   SurfaceLoop shortened(SurfaceLoop loop, const std::vector<Index>& crossed,
                         const Progress& progress = Progress());
 
