@@ -63,7 +63,7 @@ openvdb::MaskTree voxels_within_reach(const RangeVolume& volume, const VoxelBox&
 }
 
 NormalTensor tensor_of(const Eigen::Vector3f& n) {
-  const auto part = [](float x) { return std::int8_t(std::lround(127 * x)); };
+  const auto part = [](float x) { return std::int16_t(std::lround(32767 * x)); };
   return {part(n.x() * n.x()), part(n.y() * n.y()), part(n.z() * n.z()),
           part(n.x() * n.y()), part(n.x() * n.z()), part(n.y() * n.z())};
 }

@@ -18,8 +18,8 @@ constexpr int block_voxels = block_side * block_side * block_side;
 constexpr int block_number(int x, int y, int z) { return (x * block_side + y) * block_side + z; }
 
 /// n n^T of unit vectors n, or a mean of such: in which directions the surface does not go on. In the order
-/// xx, yy, zz, xy, xz, yz; times 127.
-using NormalTensor = std::array<std::int8_t, 6>;
+/// xx, yy, zz, xy, xz, yz; times 32767.
+using NormalTensor = std::array<std::int16_t, 6>;
 
 struct DiffusionBlock {
   VoxelIndex index;

@@ -23,7 +23,7 @@ constexpr double weight_across = 0.01;
 // them by about a voxel, so that this is enough for what lies across half a hole to tell.
 constexpr int sweeps_per_step = 2;
 
-constexpr float full_tensor = 127;  // a whole part, as it is stored
+constexpr float full_tensor = 32767;  // a whole part, as it is stored
 constexpr float full_weight = 255;
 
 // From a voxel to one of its neighbours.
@@ -72,7 +72,7 @@ float weight_of(const NormalTensor& tensor, const Neighbour& neighbour) {
 }
 
 // No direction is known: what a tensor of all directions alike says.
-const NormalTensor undirected = {42, 42, 42, 0, 0, 0};
+const NormalTensor undirected = {10922, 10922, 10922, 0, 0, 0};
 
 struct Around {
   Halo<NormalTensor> tensors;
@@ -113,7 +113,7 @@ std::vector<Arrival> arrivals(const DiffusionBlock& block, const Around& around)
     }
     if (total == 0) continue;
     NormalTensor tensor;
-    for (int k = 0; k < 6; ++k) tensor[k] = std::int8_t(std::lround(sum[k] / total));
+    for (int k = 0; k < 6; ++k) tensor[k] = std::int16_t(std::lround(sum[k] / total));
     result.push_back({number, tensor});
   }
   return result;
@@ -164,7 +164,7 @@ std::vector<NormalTensor> relaxed(const DiffusionBlock& block, const Around& aro
   std::vector<NormalTensor> tensors = block.tensors;
   for (int number = 0; number < block_voxels; ++number)
     for (int k = 0; k < 6 && block.within[number] && total[number] > 0; ++k)
-      tensors[number][k] = std::int8_t(std::lround(sums[k][number] / total[number]));
+      tensors[number][k] = std::int16_t(std::lround(sums[k][number] / total[number]));
   return tensors;
 }
 
