@@ -34,7 +34,7 @@ struct DiffusionOptions {
 /// known from the start: two runs of n steps are one of 2 n. Only distances of voxels that are not seen
 /// change; states, weights and normals are shared with `volume`, and what stays unfilled is filled as VRIP
 /// does. Throws CompletionError when the box lies outside the volume or an option is out of its range.
-/// Deterministic. Cost: proportional to iterations times the voxels within reach; about 40 bytes for each of
+/// Deterministic. Cost: proportional to iterations times the voxels within reach; about 60 bytes for each of
 /// these; threaded.
 RangeVolume diffuse(const RangeVolume& volume, const VoxelBox& box, const DiffusionOptions& options,
                     const Progress& progress = Progress());
