@@ -1,0 +1,65 @@
+#include "filter_volmorph/small_components.h"
+
+#include <numeric>
+#include <utility>
+
+namespace meshcomplete {
+namespace {
+
+constexpr std::size_t faces_between_checks = 1 << 16;
+constexpr Index unused = 0xffffffffu;
+
+Index root_of(std::vector<Index>& parent, Index vertex) {
+  while (parent[vertex] != vertex) vertex = parent[vertex] = parent[parent[vertex]];
+  return vertex;
+}
+
+// A vertex that stands for each vertex's component.
+std::vector<Index> component_roots(const TriangleMesh& mesh, const Progress& progress) {
+  std::vector<Index> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), Index(0));
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (face % faces_between_checks == 0) progress.update(double(face) / double(mesh.triangles.size()));
+    const Triangle& corners = mesh.triangles[face];
+    for (int k = 1; k < 3; ++k) {
+      const Index a = root_of(parent, corners[0]), b = root_of(parent, corners[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (Index vertex = 0; vertex < parent.size(); ++vertex) parent[vertex] = root_of(parent, vertex);
+  return parent;
+}
+
+void compact(TriangleMesh& mesh) {
+  std::vector<Index> number(mesh.vertices.size(), unused);
+  for (const Triangle& corners : mesh.triangles)
+    for (const Index corner : corners) number[corner] = 0;
+  Index count = 0;
+  for (std::size_t vertex = 0; vertex < number.size(); ++vertex) {
+    if (number[vertex] == unused) continue;
+    number[vertex] = count;
+    mesh.vertices[count++] = mesh.vertices[vertex];
+  }
+  mesh.vertices.resize(count);
+  for (Triangle& corners : mesh.triangles)
+    for (Index& corner : corners) corner = number[corner];
+}
+
+}  // namespace
+
+TriangleMesh without_small_components(TriangleMesh mesh, std::size_t faces, const Progress& progress) {
+  if (faces < 2) return mesh;
+  const std::vector<Index> root = component_roots(mesh, progress.part(0, 0.8, "finding small components"));
+  std::vector<Index> size(mesh.vertices.size(), 0);
+  for (const Triangle& corners : mesh.triangles) ++size[root[corners[0]]];
+  progress.update(0.9);
+  std::size_t kept = 0;
+  for (const Triangle& corners : mesh.triangles)
+    if (size[root[corners[0]]] >= faces) mesh.triangles[kept++] = corners;
+  mesh.triangles.resize(kept);
+  compact(mesh);
+  progress.update(1);
+  return mesh;
+}
+
+}  // namespace meshcomplete

@@ -1,0 +1,280 @@
+#include "filter_volmorph/volume_diffusion.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/error.h"
+#include "common/core/mesh_statistics.h"
+#include "filter_volmorph/surface_extraction.h"
+#include "tests/support/cancelling.h"
+#include "tests/volmorph/volumes.h"
+
+namespace meshcomplete {
+namespace {
+
+struct Sample {
+  double distance;
+  Vector3 normal;
+  bool hidden;  // from the scanners
+  bool looked_through = false;
+};
+
+// What scanners know of a body: seen within the ramp of its surface and empty outside, but unseen where
+// hidden.
+template <class Body>
+RangeVolume scanned(const VoxelBox& box, Body&& body) {
+  VolumeFrame frame;
+  frame.box = box;
+  DenseVolume volume(frame);
+  volume.for_each([&](const VoxelIndex& at, const Voxel&) {
+    const Sample sample = body(Vector3(at.cast<double>()));
+    Voxel& voxel = volume.at(at);
+    const bool near = std::abs(sample.distance) < frame.ramp;
+    if (sample.looked_through)
+      voxel.state = VoxelState::empty;
+    else if (sample.hidden || (!near && sample.distance < 0))
+      voxel.state = VoxelState::unseen;
+    else if (!near)
+      voxel.state = VoxelState::empty;
+    else
+      voxel = {VoxelState::seen, float(sample.distance), 1, Eigen::Vector3f(sample.normal.cast<float>())};
+  });
+  return volume.volume();
+}
+
+VoxelBox cube_of(int half) { return {VoxelIndex::Constant(-half), VoxelIndex::Constant(half)}; }
+
+constexpr double sphere_radius = 16;
+
+// Not seen within a cone round +z. Beyond the ramp somebody looked through.
+Sample sphere(const Vector3& at) {
+  const double distance = at.norm() - sphere_radius;
+  const bool cone = at.z() > 0.8 * at.norm();
+  return {distance, at.norm() > 0 ? Vector3(at.normalized()) : Vector3(0, 0, 1), cone && distance < 8};
+}
+
+Sample torus(const Vector3& at) {
+  const double flat = at.head<2>().norm();
+  const Vector3 middle = flat > 0 ? Vector3(at.x() / flat * 15, at.y() / flat * 15, 0) : Vector3(15, 0, 0);
+  const double distance = (at - middle).norm() - 6;
+  const bool hidden = at.x() > 0 && std::abs(at.y()) < 5;
+  return {distance, (at - middle).normalized(), hidden && distance < 6};
+}
+
+// Figure 2.3: a body above and one below, a gap between them of six voxels, and in both faces a hole, one
+// across from the other, 24 wide. Perhaps somebody looked through the middle of the gap.
+Sample two_bodies(const Vector3& at, bool looked_through) {
+  const double gap = 3 - std::abs(at.z()), above = std::abs(at.z()) - 18;
+  const int side = std::abs(at.x()) > std::abs(at.y()) ? 0 : 1;
+  const double beside = std::abs(at[side]) - 24;
+  const double distance = std::max({gap, above, beside});
+  Vector3 normal = Vector3::Unit(2) * (at.z() > 0 ? 1 : -1);
+  if (distance == gap) normal = -normal;
+  if (distance == beside) normal = Vector3::Unit(side) * (at[side] > 0 ? 1 : -1);
+  const bool hidden = at.head<2>().norm() < 12 && std::abs(at.z()) < 11;
+  return {distance, normal, hidden, hidden && looked_through && std::abs(at.z()) < 1};
+}
+
+RangeVolume two_bodies_scanned(bool looked_through) {
+  return scanned({{-28, -28, -22}, {28, 28, 22}},
+                 [&](const Vector3& at) { return two_bodies(at, looked_through); });
+}
+
+DiffusionOptions diffusion(bool line_of_sight, bool normals) {
+  DiffusionOptions options;
+  options.line_of_sight = line_of_sight;
+  options.normals = normals;
+  return options;
+}
+
+MeshStatistics filled(const RangeVolume& volume, const DiffusionOptions& options = DiffusionOptions()) {
+  const RangeVolume result = diffuse(volume, volume.frame().box, options);
+  return measure(extract_surface(result, {}), true);
+}
+
+void expect_only_distances_changed(const RangeVolume& before, const RangeVolume& after, const VoxelBox& box) {
+  EXPECT_EQ(&*before.grids().state, &*after.grids().state);
+  EXPECT_EQ(&*before.grids().weight, &*after.grids().weight);
+  EXPECT_EQ(&*before.grids().normal, &*after.grids().normal);
+  const DenseVolume a(before), b(after);
+  a.for_each([&](const VoxelIndex& at, const Voxel& voxel) {
+    if (voxel.state == VoxelState::seen || !box.contains(at)) {
+      ASSERT_TRUE(same_voxel(voxel, b.at(at))) << at.transpose();
+    }
+    ASSERT_LE(std::abs(b.at(at).distance), float(before.frame().ramp));
+  });
+}
+
+TEST(VolumeDiffusion, closes_a_hole_in_a_sphere) {
+  const RangeVolume volume = scanned(cube_of(26), sphere);
+  const double ball = 4. / 3 * M_PI * std::pow(sphere_radius, 3);
+  const MeshStatistics before = measure(extract_surface(volume, {}), false);
+  EXPECT_GT(before.volume, 1.15 * ball);  // the cone as far as nobody looked
+  for (const bool normals : {false, true}) {
+    const MeshStatistics found = filled(volume, diffusion(true, normals));
+    EXPECT_TRUE(found.solid());
+    EXPECT_EQ(*found.genus, 0);
+    EXPECT_EQ(found.components, 1u);
+    EXPECT_NEAR(found.volume, ball, 0.04 * ball) << normals;
+  }
+}
+
+TEST(VolumeDiffusion, closes_a_hole_in_a_torus) {
+  const RangeVolume volume = scanned({{-28, -28, -14}, {28, 28, 14}}, torus);
+  const double ring = 2 * M_PI * M_PI * 15 * 36;
+  EXPECT_GT(measure(extract_surface(volume, {}), false).volume, 1.1 * ring);
+  for (const bool normals : {false, true}) {
+    const MeshStatistics found = filled(volume, diffusion(true, normals));
+    EXPECT_TRUE(found.solid());
+    EXPECT_EQ(*found.genus, 1);
+    EXPECT_EQ(found.components, 1u);
+    EXPECT_NEAR(found.volume, ring, 0.05 * ring) << normals;
+  }
+}
+
+TEST(VolumeDiffusion, merges_two_near_holes_without_line_of_sight_and_normals) {
+  for (const bool looked_through : {false, true}) {
+    const MeshStatistics found = filled(two_bodies_scanned(looked_through), diffusion(false, false));
+    EXPECT_TRUE(found.solid());
+    EXPECT_EQ(found.components, 1u);
+  }
+}
+
+TEST(VolumeDiffusion, keeps_two_near_holes_apart_by_the_line_of_sight) {
+  const MeshStatistics found = filled(two_bodies_scanned(true), diffusion(true, false));
+  EXPECT_TRUE(found.solid());
+  EXPECT_EQ(found.components, 2u);
+  EXPECT_EQ(*found.genus, 0);
+}
+
+TEST(VolumeDiffusion, keeps_two_near_holes_apart_by_the_normals) {
+  for (const bool line_of_sight : {false, true}) {
+    const RangeVolume volume = two_bodies_scanned(false);
+    EXPECT_EQ(measure(extract_surface(volume, {}), false).components, 1u);
+    const MeshStatistics found = filled(volume, diffusion(line_of_sight, true));
+    EXPECT_TRUE(found.solid());
+    EXPECT_EQ(found.components, 2u);
+    EXPECT_EQ(*found.genus, 0);
+  }
+}
+
+TEST(VolumeDiffusion, fills_two_near_holes_each_across_itself) {
+  const RangeVolume volume = two_bodies_scanned(true);
+  const RangeVolume result = diffuse(volume, volume.frame().box, {});
+  // The faces go on within two voxels of where they are round the holes.
+  for (const int x : {0, 4, 8, -8})
+    for (const int side : {-1, 1}) {
+      EXPECT_LT(result.at({x, 0, 5 * side}).distance, 0) << x;
+      EXPECT_GT(result.at({x, 0, 1 * side}).distance, 0) << x;
+    }
+}
+
+TEST(VolumeDiffusion, keeps_voxels_that_are_known_to_be_empty_outside) {
+  const DenseVolume noise = random_volume({{0, 0, 0}, {30, 25, 20}}, 3);
+  const RangeVolume volume = noise.volume();
+  const DenseVolume with(diffuse(volume, volume.frame().box, diffusion(true, true)));
+  const DenseVolume without(diffuse(volume, volume.frame().box, diffusion(false, true)));
+  std::size_t inside = 0;
+  noise.for_each([&](const VoxelIndex& at, const Voxel& voxel) {
+    if (voxel.state != VoxelState::empty) return;
+    EXPECT_GE(with.at(at).distance, 0.5f);
+    if (without.at(at).distance < 0) ++inside;
+  });
+  EXPECT_GT(inside, 100u);
+}
+
+TEST(VolumeDiffusion, changes_only_distances_of_voxels_in_the_box_that_are_not_seen) {
+  const RangeVolume volume = random_volume({{-7, 2, 0}, {24, 25, 20}}, 4).volume();
+  const VoxelBox box{{-3, 5, 2}, {12, 40, 9}};
+  const RangeVolume result = diffuse(volume, box, {});
+  expect_only_distances_changed(volume, result, box);
+  std::size_t changed = 0;
+  const DenseVolume before(volume), after(result);
+  before.for_each([&](const VoxelIndex& at, const Voxel& voxel) {
+    if (!same_voxel(voxel, after.at(at))) ++changed;
+  });
+  EXPECT_GT(changed, 500u);
+  const MeshStatistics found = measure(extract_surface(result, {}), true);
+  EXPECT_TRUE(found.watertight());
+  EXPECT_TRUE(found.manifold());
+  EXPECT_EQ(*found.self_intersecting_pairs, 0u);
+}
+
+TEST(VolumeDiffusion, leaves_what_is_out_of_reach_as_it_was) {
+  const RangeVolume volume = scanned(cube_of(26), sphere);
+  DiffusionOptions options;
+  options.reach = 3;
+  const RangeVolume result = diffuse(volume, volume.frame().box, options);
+  EXPECT_EQ(result.at({0, 0, 16}).distance, -4);  // nine from the rim
+  EXPECT_EQ(result.at({0, 0, 0}).distance, -4);
+  EXPECT_EQ(result.at({25, 25, 25}).distance, 4);
+  EXPECT_NE(result.at({9, 0, 14}).distance, -4);
+  const MeshStatistics found = measure(extract_surface(result, {}), false);
+  EXPECT_TRUE(found.watertight());
+  options.reach = 32;
+  options.iterations = 3;  // steps are as far as a front comes
+  EXPECT_EQ(diffuse(volume, volume.frame().box, options).at({0, 0, 16}).distance, -4);
+}
+
+TEST(VolumeDiffusion, goes_on_where_it_stopped) {
+  const RangeVolume volume = scanned(cube_of(26), sphere);
+  DiffusionOptions half;
+  half.iterations = 6;
+  DiffusionOptions whole = half;
+  whole.iterations = 12;
+  const VoxelBox& box = volume.frame().box;
+  const DenseVolume twice(diffuse(diffuse(volume, box, half), box, half)), once(diffuse(volume, box, whole));
+  once.for_each([&](const VoxelIndex& at, const Voxel& voxel) {
+    ASSERT_TRUE(same_voxel(voxel, twice.at(at))) << at.transpose();
+  });
+}
+
+TEST(VolumeDiffusion, changes_nothing_where_nothing_is_seen) {
+  VolumeFrame frame;
+  frame.box = cube_of(20);
+  VolumeBuilder builder(frame);
+  builder.fill({{0, 0, 0}, {20, 20, 20}}, VoxelState::empty);
+  const RangeVolume volume = builder.finish();
+  const RangeVolume result = diffuse(volume, frame.box, {});
+  EXPECT_EQ(result.grids().distance->activeVoxelCount(), 0u);
+}
+
+TEST(VolumeDiffusion, is_the_same_for_any_number_of_threads) {
+  const RangeVolume volume = random_volume(cube_of(20), 6).volume();
+  const DenseVolume threaded(diffuse(volume, volume.frame().box, {}));
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const DenseVolume single(diffuse(volume, volume.frame().box, {}));
+  single.for_each([&](const VoxelIndex& at, const Voxel& voxel) {
+    ASSERT_TRUE(same_voxel(voxel, threaded.at(at))) << at.transpose();
+  });
+}
+
+TEST(VolumeDiffusion, can_be_cancelled) {
+  const RangeVolume volume = scanned(cube_of(26), sphere);
+  test::expect_cancels_at_any_step(
+      [&](const Progress& progress) { diffuse(volume, volume.frame().box, {}, progress); });
+}
+
+TEST(VolumeDiffusion, refuses_options_out_of_range) {
+  const RangeVolume volume = random_volume(cube_of(4), 6).volume();
+  const auto refused = [&](const VoxelBox& box, int iterations, int reach, double weight) {
+    DiffusionOptions options;
+    options.iterations = iterations;
+    options.reach = reach;
+    options.empty_weight = weight;
+    EXPECT_THROW(diffuse(volume, box, options), CompletionError);
+  };
+  const VoxelBox& all = volume.frame().box;
+  refused(all, 0, 1, 0);
+  refused(all, 1, 0, 0);
+  refused(all, 1, 1, -0.1);
+  refused(all, 1, 1, 1.1);
+  refused(all, 1, 1, std::nan(""));
+  refused({{10, 10, 10}, {12, 12, 12}}, 1, 1, 0);
+}
+
+}  // namespace
+}  // namespace meshcomplete
