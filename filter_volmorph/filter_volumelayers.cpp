@@ -33,7 +33,7 @@ template <class Value>
 const Value* attribute(const MeshModel& layer, const char* name) {
   // vcg looks attributes up in a mesh that is not const, and changes nothing of this one.
   CMeshO& mesh = const_cast<CMeshO&>(layer.cm);
-  const auto handle = Allocator::FindPerMeshAttribute<std::shared_ptr<const Value>>(mesh, name);
+  auto handle = Allocator::FindPerMeshAttribute<std::shared_ptr<const Value>>(mesh, name);
   return Allocator::IsValidHandle(mesh, handle) ? handle().get() : nullptr;
 }
 
