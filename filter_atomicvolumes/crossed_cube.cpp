@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/triangle_intersection.h"
 
 namespace meshcomplete {
@@ -101,12 +101,7 @@ void CrossedCube::find_pieces() {
       return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
     }
   };
-  std::vector<Index> parent(triangles_.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](Index i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets sets(triangles_.size());
   std::vector<Side> sides;
   sides.reserve(3 * triangles_.size());
   for (Index i = 0; i < triangles_.size(); ++i) {
@@ -120,11 +115,11 @@ void CrossedCube::find_pieces() {
   std::sort(sides.begin(), sides.end());
   for (std::size_t i = 1; i < sides.size(); ++i)
     if (sides[i].low == sides[i - 1].low && sides[i].high == sides[i - 1].high)
-      parent[root(sides[i].triangle)] = root(sides[i - 1].triangle);
+      sets.unite(sides[i].triangle, sides[i - 1].triangle);
   piece_of_.assign(triangles_.size(), 0);
   std::vector<Index> number(triangles_.size(), no_piece);
   for (Index i = 0; i < triangles_.size(); ++i) {
-    Index& piece = number[root(i)];
+    Index& piece = number[sets.root(i)];
     if (piece == no_piece) {
       piece = static_cast<Index>(pieces_.size());
       pieces_.emplace_back();

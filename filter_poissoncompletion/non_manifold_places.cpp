@@ -1,8 +1,9 @@
 #include "filter_poissoncompletion/non_manifold_places.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
+
+#include "common/core/disjoint_sets.h"
 
 namespace meshcomplete {
 namespace {
@@ -27,12 +28,7 @@ std::vector<std::vector<Index>> non_manifold_places(const std::vector<Triangle>&
     }
   std::sort(sides.begin(), sides.end());
   // Corners of one fan hang together through the edges with two triangles.
-  std::vector<Index> parent(3 * triangles.size());
-  std::iota(parent.begin(), parent.end(), Index(0));
-  const auto root = [&](Index i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets fans(3 * triangles.size());
   const auto corner_at = [&](Index half_edge, Index vertex) {
     const Index next = half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
     return triangles[half_edge / 3][half_edge % 3] == vertex ? half_edge : next;
@@ -44,7 +40,7 @@ std::vector<std::vector<Index>> non_manifold_places(const std::vector<Triangle>&
       ++past;
     if (past - i == 2) {
       for (Index v : {sides[i].low, sides[i].high})
-        parent[root(corner_at(sides[i].half_edge, v))] = root(corner_at(sides[i + 1].half_edge, v));
+        fans.unite(corner_at(sides[i].half_edge, v), corner_at(sides[i + 1].half_edge, v));
       continue;
     }
     places.emplace_back();
@@ -52,11 +48,11 @@ std::vector<std::vector<Index>> non_manifold_places(const std::vector<Triangle>&
     listed[sides[i].low] = listed[sides[i].high] = 1;
   }
   std::vector<std::vector<Index>> at(past_vertices);
-  for (Index corner = 0; corner < parent.size(); ++corner)
+  for (Index corner = 0; corner < fans.size(); ++corner)
     at[triangles[corner / 3][corner % 3]].push_back(corner);
   for (Index v = 0; v < past_vertices; ++v) {
     if (listed[v] || std::all_of(at[v].begin(), at[v].end(),
-                                 [&](Index corner) { return root(corner) == root(at[v].front()); }))
+                                 [&](Index corner) { return fans.root(corner) == fans.root(at[v].front()); }))
       continue;
     places.emplace_back();
     for (Index corner : at[v]) places.back().push_back(corner / 3);

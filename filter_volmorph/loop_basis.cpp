@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <queue>
 #include <utility>
+
+#include "common/core/disjoint_sets.h"
 
 namespace meshcomplete {
 namespace {
@@ -16,26 +17,6 @@ const char* const stage = "finding handles";
 constexpr Index none = 0xffffffffu;
 constexpr std::size_t between_checks = 1 << 14;
 constexpr double unreached = std::numeric_limits<double>::infinity();
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), Index(0));
-  }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // Whether they were apart.
-  bool unite(Index a, Index b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 double length_of(const TriangleMesh& mesh, const CappedSurface& surface, Index h) {
   const Index a = surface.original[surface.origin[h]], b = surface.original[surface.target(h)];
@@ -138,7 +119,7 @@ std::vector<Index> generating_edges(const TriangleMesh& mesh, const CappedSurfac
   tbb::parallel_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
     return a.loop != b.loop ? a.loop > b.loop : a.half_edge < b.half_edge;
   });
-  UnionFind faces(surface.opposite.size() / 3);
+  DisjointSets faces(surface.opposite.size() / 3);
   std::vector<Index> rest;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (i % between_checks == 0) progress.update(0.6 + 0.4 * double(i) / double(edges.size()));

@@ -1,7 +1,8 @@
 #include "filter_volmorph/small_components.h"
 
-#include <numeric>
 #include <utility>
+
+#include "common/core/disjoint_sets.h"
 
 namespace meshcomplete {
 namespace {
@@ -9,25 +10,17 @@ namespace {
 constexpr std::size_t faces_between_checks = 1 << 16;
 constexpr Index unused = 0xffffffffu;
 
-Index root_of(std::vector<Index>& parent, Index vertex) {
-  while (parent[vertex] != vertex) vertex = parent[vertex] = parent[parent[vertex]];
-  return vertex;
-}
-
 // A vertex that stands for each vertex's component.
 std::vector<Index> component_roots(const TriangleMesh& mesh, const Progress& progress) {
-  std::vector<Index> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), Index(0));
+  DisjointSets components(mesh.vertices.size());
   for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
     if (face % faces_between_checks == 0) progress.update(double(face) / double(mesh.triangles.size()));
     const Triangle& corners = mesh.triangles[face];
-    for (int k = 1; k < 3; ++k) {
-      const Index a = root_of(parent, corners[0]), b = root_of(parent, corners[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int k = 1; k < 3; ++k) components.unite(corners[0], corners[k]);
   }
-  for (Index vertex = 0; vertex < parent.size(); ++vertex) parent[vertex] = root_of(parent, vertex);
-  return parent;
+  std::vector<Index> root(mesh.vertices.size());
+  for (Index vertex = 0; vertex < root.size(); ++vertex) root[vertex] = components.root(vertex);
+  return root;
 }
 
 void compact(TriangleMesh& mesh) {

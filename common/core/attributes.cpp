@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <unordered_map>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/error.h"
 
 namespace meshcomplete {
@@ -71,18 +71,14 @@ Eigen::SparseMatrix<double> edge_weights(const LocalPatch& patch) {
 
 /// Connected pieces of the patch: for every vertex the number of its piece.
 std::vector<Index> pieces_of(const LocalPatch& patch) {
-  std::vector<Index> parent(patch.positions.size());
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto find = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets pieces(patch.positions.size());
   for (const auto& [a, b, c] : patch.triangles) {
-    parent[find(a)] = find(b);
-    parent[find(b)] = find(c);
+    pieces.unite(a, b);
+    pieces.unite(b, c);
   }
-  for (Index v = 0; v < parent.size(); ++v) parent[v] = find(v);
-  return parent;
+  std::vector<Index> piece(pieces.size());
+  for (Index v = 0; v < piece.size(); ++v) piece[v] = pieces.root(v);
+  return piece;
 }
 
 /// The range of the rim's values by piece and column.

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/error.h"
 
 namespace meshcomplete {
@@ -318,21 +318,16 @@ void minimize_normal_variation(TriangleMesh& surface, const std::vector<char>& f
 
 // Rounding can keep the pivots of a singular system positive, so that its cause has to be looked for.
 void expect_anchored(const TriangleMesh& surface, const std::vector<char>& fixed) {
-  std::vector<Index> parent(fixed.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets pieces(fixed.size());
   for (const Triangle& t : surface.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
+    pieces.unite(t[1], t[0]);
+    pieces.unite(t[2], t[0]);
   }
   std::vector<char> anchored(fixed.size(), 0);
   for (Index v = 0; v < fixed.size(); ++v)
-    if (fixed[v]) anchored[root(v)] = 1;
+    if (fixed[v]) anchored[pieces.root(v)] = 1;
   for (Index v = 0; v < fixed.size(); ++v)
-    if (!anchored[root(v)])
+    if (!anchored[pieces.root(v)])
       throw CompletionError(stage, "A piece of the surface is joined to nothing that holds it.");
 }
 

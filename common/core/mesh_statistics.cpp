@@ -9,33 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <numeric>
 #include <sstream>
 #include <utility>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/mesh_topology.h"
 #include "common/core/triangle_intersection.h"
 
 namespace meshcomplete {
 namespace {
-
-/// Union-find with path halving; the representative of a set is its least member.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index find(Index x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void unite(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 Index next(Index half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; }
 
@@ -85,7 +67,7 @@ class Combinatorics {
   std::vector<Index>
       beyond_;  ///< half-edges at edges with three or more faces, those of an edge side by side
   std::vector<std::size_t> beyond_first_;  ///< where each such edge begins in `beyond_`, and the end
-  Sets fans_;                              ///< of corners
+  DisjointSets fans_;                      ///< of corners
   std::size_t edges_ = 0;
   long long fan_count_ = 0;
 };
@@ -126,7 +108,7 @@ void Combinatorics::count_fans(MeshStatistics& s) {
 
   std::vector<char> fans_at(mesh_.vertices.size(), 0);  // 2 stands for more than one
   for (Index h = 0; h < topology_.opposite.size(); ++h) {
-    if (skipped_[h / 3] || fans_.find(h) != h) continue;
+    if (skipped_[h / 3] || fans_.root(h) != h) continue;
     ++fan_count_;
     char& fans = fans_at[from(h)];
     if (++fans == 2) ++s.non_manifold_vertices;
@@ -135,13 +117,13 @@ void Combinatorics::count_fans(MeshStatistics& s) {
 }
 
 void Combinatorics::count_components(MeshStatistics& s) {
-  Sets faces(mesh_.triangles.size());
+  DisjointSets faces(mesh_.triangles.size());
   for (Index h = 0; h < topology_.opposite.size(); ++h)
     if (paired(h)) faces.unite(h / 3, topology_.opposite[h] / 3);
   for (std::size_t e = 0; e + 1 < beyond_first_.size(); ++e)
     for (std::size_t i = beyond_first_[e] + 1; i < beyond_first_[e + 1]; ++i)
       faces.unite(beyond_[i - 1] / 3, beyond_[i] / 3);
-  for (Index f = 0; f < mesh_.triangles.size(); ++f) s.components += !skipped_[f] && faces.find(f) == f;
+  for (Index f = 0; f < mesh_.triangles.size(); ++f) s.components += !skipped_[f] && faces.root(f) == f;
 }
 
 /// Boundary edges that end at one fan belong to one loop.
@@ -149,15 +131,15 @@ void Combinatorics::count_boundary_loops(MeshStatistics& s) {
   const std::vector<Index>& boundary = topology_.boundary_half_edges;
   std::vector<std::pair<Index, Index>> ends;  // fan, number of the boundary edge
   for (Index i = 0; i < boundary.size(); ++i) {
-    ends.emplace_back(fans_.find(boundary[i]), i);
-    ends.emplace_back(fans_.find(next(boundary[i])), i);
+    ends.emplace_back(fans_.root(boundary[i]), i);
+    ends.emplace_back(fans_.root(next(boundary[i])), i);
   }
   std::sort(ends.begin(), ends.end());
-  Sets loops(boundary.size());
+  DisjointSets loops(boundary.size());
   for (std::size_t i = 1; i < ends.size(); ++i)
     if (ends[i].first == ends[i - 1].first) loops.unite(ends[i].second, ends[i - 1].second);
   std::vector<std::size_t> edges(boundary.size(), 0);
-  for (Index i = 0; i < boundary.size(); ++i) ++edges[loops.find(i)];
+  for (Index i = 0; i < boundary.size(); ++i) ++edges[loops.root(i)];
   for (std::size_t count : edges)
     if (count > 0) s.boundary_loops.push_back(count);
   std::sort(s.boundary_loops.rbegin(), s.boundary_loops.rend());

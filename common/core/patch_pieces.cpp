@@ -1,8 +1,9 @@
 #include "common/core/patch_pieces.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
+
+#include "common/core/disjoint_sets.h"
 
 namespace meshcomplete {
 namespace {
@@ -42,20 +43,15 @@ std::vector<PatchPiece> make_pieces(std::vector<Sheet> sheets, const MeshTopolog
 }
 
 std::vector<std::vector<std::size_t>> group_by_loops(const std::vector<PatchPiece>& pieces) {
-  std::vector<std::size_t> parent(pieces.size());
-  std::iota(parent.begin(), parent.end(), std::size_t(0));
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::map<std::size_t, std::size_t> first;  // piece of each loop
-  for (std::size_t i = 0; i < pieces.size(); ++i)
+  DisjointSets sets(pieces.size());
+  std::map<std::size_t, Index> first;  // piece of each loop
+  for (Index i = 0; i < pieces.size(); ++i)
     for (std::size_t loop : pieces[i].loops) {
       const auto [it, fresh] = first.try_emplace(loop, i);
-      if (!fresh) parent[std::max(root(i), root(it->second))] = std::min(root(i), root(it->second));
+      if (!fresh) sets.unite(i, it->second);
     }
-  std::map<std::size_t, std::vector<std::size_t>> by_root;
-  for (std::size_t i = 0; i < pieces.size(); ++i) by_root[root(i)].push_back(i);
+  std::map<Index, std::vector<std::size_t>> by_root;
+  for (Index i = 0; i < pieces.size(); ++i) by_root[sets.root(i)].push_back(i);
   std::vector<std::vector<std::size_t>> groups;
   for (auto& [top, members] : by_root) groups.push_back(std::move(members));
   return groups;

@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/pair_key.h"
 #include "common/core/touching_fans.h"
 
@@ -35,11 +35,9 @@ class Splitter {
         input_(input),
         topology_(topology),
         surface_(surface),
-        parent_(3 * surface.triangles.size()),
-        partner_(parent_.size(), none),
-        rim_(parent_.size(), none) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
+        fans_(3 * surface.triangles.size()),
+        partner_(fans_.size(), none),
+        rim_(fans_.size(), none) {}
 
   std::vector<Sheet> run();
 
@@ -50,11 +48,6 @@ class Splitter {
   Index rim_edge(Index from, Index to) const;
   void sort_by_angle(std::vector<FaceSide>& sides, Index rim) const;
   void join(const FaceSide& a, const FaceSide& b);
-  void unite(Index a, Index b) { parent_[root(a)] = root(b); }
-  Index root(Index corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
   Index vertex(Index half_edge) const { return surface_.triangles[half_edge / 3][half_edge % 3]; }
   static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
   void number_fans();
@@ -67,7 +60,7 @@ class Splitter {
   const TriangleMesh &mesh_, &input_;
   const MeshTopology& topology_;
   const SeparatingSurface& surface_;
-  std::vector<Index> parent_;   // of corners: those of one fan hang together
+  DisjointSets fans_;           // of corners
   std::vector<Index> partner_;  // the half-edge at the other side of an edge
   std::vector<Index> rim_;      // the mesh's boundary half-edge at a half-edge of the patch
   std::unordered_map<std::uint64_t, Index> boundary_;  // by its two vertices
@@ -124,8 +117,8 @@ void Splitter::join(const FaceSide& a, const FaceSide& b) {
   if (a.half_edge == none || b.half_edge == none) return;
   partner_[a.half_edge] = b.half_edge;
   partner_[b.half_edge] = a.half_edge;
-  unite(a.half_edge, next(b.half_edge));
-  unite(next(a.half_edge), b.half_edge);
+  fans_.unite(a.half_edge, next(b.half_edge));
+  fans_.unite(next(a.half_edge), b.half_edge);
 }
 
 // The inside lies behind a face, which is before it, turning about the edge, when the face goes along the
@@ -174,14 +167,14 @@ void Splitter::pair_sides() {
 
 // A vertex for every fan. On the rim the fans that end there keep what the vertex is.
 void Splitter::number_fans() {
-  std::vector<char> at_rim(parent_.size(), 0);
-  for (Index h = 0; h < parent_.size(); ++h)
-    if (partner_[h] == none) at_rim[root(h)] = at_rim[root(next(h))] = 1;
-  std::vector<Index> number(parent_.size(), none);
+  std::vector<char> at_rim(fans_.size(), 0);
+  for (Index h = 0; h < fans_.size(); ++h)
+    if (partner_[h] == none) at_rim[fans_.root(h)] = at_rim[fans_.root(next(h))] = 1;
+  std::vector<Index> number(fans_.size(), none);
   std::vector<char> seen(surface_.vertices.size(), 0);
   triangles_.resize(surface_.triangles.size());
-  for (Index corner = 0; corner < parent_.size(); ++corner) {
-    const Index fan = root(corner), v = vertex(corner);
+  for (Index corner = 0; corner < fans_.size(); ++corner) {
+    const Index fan = fans_.root(corner), v = vertex(corner);
     if (number[fan] == none) {
       number[fan] = static_cast<Index>(vertices_.size());
       const SheetVertex& original = surface_.vertices[v];
@@ -272,18 +265,13 @@ void Splitter::separate_doubles() {
 }
 
 std::vector<Sheet> Splitter::pieces() const {
-  std::vector<Index> parent(vertices_.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto find = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets connected(vertices_.size());
   for (const Triangle& t : triangles_)
-    for (int k = 1; k < 3; ++k) parent[find(t[k])] = find(t[0]);
+    for (int k = 1; k < 3; ++k) connected.unite(t[k], t[0]);
   std::vector<Sheet> sheets;
   std::vector<Index> sheet_of(vertices_.size(), none), local(vertices_.size(), none);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    const Index top = find(triangles_[i][0]);
+    const Index top = connected.root(triangles_[i][0]);
     if (sheet_of[top] == none) {
       sheet_of[top] = static_cast<Index>(sheets.size());
       sheets.emplace_back();
@@ -302,15 +290,15 @@ std::vector<Sheet> Splitter::pieces() const {
   }
   for (Index h = 0; h < partner_.size(); ++h) {
     if (partner_[h] != none) continue;
-    Sheet& sheet = sheets[sheet_of[find(triangles_[h / 3][h % 3])]];
+    Sheet& sheet = sheets[sheet_of[connected.root(triangles_[h / 3][h % 3])]];
     if (rim_[h] == none)
       sheet.flaw = Sheet::Flaw::open;
     else
       sheet.closes.push_back(rim_[h]);
   }
   for (Index v = 0; v < joined_.size(); ++v) {
-    if (!joined_[v] || sheet_of[find(v)] == none) continue;
-    Sheet::Flaw& flaw = sheets[sheet_of[find(v)]].flaw;
+    if (!joined_[v] || sheet_of[connected.root(v)] == none) continue;
+    Sheet::Flaw& flaw = sheets[sheet_of[connected.root(v)]].flaw;
     if (flaw == Sheet::Flaw::none) flaw = Sheet::Flaw::joins_vertices;
   }
   for (Sheet& sheet : sheets) {

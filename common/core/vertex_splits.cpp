@@ -1,31 +1,12 @@
 #include "common/core/vertex_splits.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
+
+#include "common/core/disjoint_sets.h"
 
 namespace meshcomplete {
 namespace {
-
-// Corners of faces, joined into fans; a fan's representative is its least corner.
-class Fans {
- public:
-  explicit Fans(std::size_t corners) : parent_(corners) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-  void join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 Index next(Index half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; }
 
@@ -35,13 +16,13 @@ std::vector<VertexSplit> split_overlapping_vertices(const TriangleMesh& mesh, co
   constexpr Index none = 0xffffffffu;
   const auto vertex = [&](Index corner) { return mesh.triangles[corner / 3][corner % 3]; };
   const auto corners = static_cast<Index>(3 * mesh.triangles.size());
-  Fans fans(corners);
+  DisjointSets fans(corners);  // by its least corner
   for (Index h = 0; h < corners; ++h) {
     const Index other = topology.opposite[h];
     if (other >= corners || other < h) continue;
     const bool same_way = vertex(h) == vertex(other);
-    fans.join(h, same_way ? other : next(other));
-    fans.join(next(h), same_way ? next(other) : other);
+    fans.unite(h, same_way ? other : next(other));
+    fans.unite(next(h), same_way ? next(other) : other);
   }
   std::vector<Index> keeps(mesh.vertices.size(), none);  // the fan that keeps the vertex
   std::vector<std::tuple<Index, Index, Index>> moved;    // vertex, fan, face
@@ -50,7 +31,7 @@ std::vector<VertexSplit> split_overlapping_vertices(const TriangleMesh& mesh, co
     const std::vector<Index>& degenerate = topology.degenerate_faces;
     while (skipped < degenerate.size() && degenerate[skipped] < c / 3) ++skipped;
     if (skipped < degenerate.size() && degenerate[skipped] == c / 3) continue;
-    const Index fan = fans.find(c), v = vertex(c);
+    const Index fan = fans.root(c), v = vertex(c);
     if (keeps[v] == none) keeps[v] = fan;
     if (keeps[v] != fan) moved.emplace_back(v, fan, c / 3);
   }
