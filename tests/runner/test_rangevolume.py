@@ -12,12 +12,12 @@ import sys
 import tempfile
 import time
 import unittest
-import zlib
 
 from runner_case import CHECK, Ply, RunnerCase, sphere, write_ply
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import range_scans  # noqa: E402
+from png_images import read_png  # noqa: E402
 
 MERGE, VOXELIZE, OPEN, SAVE, MORPHOLOGY, FILL, EXTRACT, SLICE = (
     f"Range Volume: {name}"
@@ -27,36 +27,6 @@ MERGED = ("-f", MERGE, "-p", f"VoxelSize={VOXEL}", "Ramp=0.18", "LineOfSight=Z a
 # What is unseen and open to the outside goes; what is left is the inside of the observed surface.
 STRIPPED = ("-f", MORPHOLOGY, "-p", "Operators=e60", "Measure=false")
 EMPTY, UNSEEN, SEEN = (0, 0, 0), (139, 90, 43), (255, 255, 255)
-
-
-def read_png(path):
-    """Width, height and rows of (r, g, b) of a PNG with 8 bits for each of three colours."""
-    data = path.read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", path
-    at, packed = 8, b""
-    while at < len(data):
-        (length,), kind = struct.unpack_from(">I", data, at), data[at + 4:at + 8]
-        body = data[at + 8:at + 8 + length]
-        if kind == b"IHDR":
-            width, height, depth, colours, _, _, interlaced = struct.unpack(">IIBBBBB", body)
-            assert (depth, colours, interlaced) == (8, 2, 0), path
-        elif kind == b"IDAT":
-            packed += body
-        at += 12 + length
-    return width, height, unfiltered(zlib.decompress(packed), width, height)
-
-
-def unfiltered(raw, width, height):
-    size, rows, above = 3 * width, [], bytes(3 * width)
-    for number in range(height):
-        kind, line = raw[number * (size + 1)], bytearray(raw[number * (size + 1) + 1:(number + 1) * (size + 1)])
-        for i in range(size):
-            left, up, corner = (line[i - 3], above[i], above[i - 3]) if i >= 3 else (0, above[i], 0)
-            nearest = min((left, up, corner), key=lambda value: abs(left + up - corner - value))
-            line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[kind]) & 255
-        rows.append([tuple(line[i:i + 3]) for i in range(0, size, 3)])
-        above = bytes(line)
-    return rows
 
 
 class VolumeCase(RunnerCase):
