@@ -1,38 +1,20 @@
 #include "filter_volmorph/filter_volumechanges.h"
 
-#include <cmath>
 #include <functional>
 #include <utility>
 
-#include "common/core/error.h"
 #include "common/host/close_holes_parameters.h"
 #include "common/host/meshlab_version.h"
+#include "filter_volmorph/filter_volumebox.h"
 #include "filter_volmorph/filter_volumelayers.h"
 #include "filter_volmorph/filter_volumelog.h"
 #include "filter_volmorph/operator_sequence.h"
 #include "filter_volmorph/surface_extraction.h"
-#include "filter_volmorph/volume_box.h"
 #include "filter_volmorph/volume_diffusion.h"
 
 namespace meshcomplete {
 namespace host {
 namespace {
-
-enum class Where { everywhere, voxels, space, selection };
-
-std::vector<ParameterDeclaration> box_parameters() {
-  return {
-      choice_parameter(
-          "Box", "Where",
-          "Everywhere; in a box given in voxels or in mesh units; or under the selected faces of a slice "
-          "of this volume, through its whole depth.",
-          {"Everywhere", "Box, in voxels", "Box, in mesh units", "Selection in a slice"}),
-      point_parameter("BoxFrom", "Box from", "The lowest corner of the box; it belongs to it.",
-                      Vector3::Zero()),
-      point_parameter("BoxTo", "Box to", "The highest corner of the box; it belongs to it.", Vector3::Zero()),
-      layer_parameter("SliceLayer", "Slice",
-                      "The slice with the selection. None: the only one of this volume that has one.")};
-}
 
 std::vector<ParameterDeclaration> result_parameters() {
   return {
@@ -69,33 +51,6 @@ DiffusionOptions diffusion_options(const ParameterValues& values) {
   options.line_of_sight = values.boolean("LineOfSight");
   options.normals = values.boolean("Normals");
   return options;
-}
-
-VoxelIndex as_voxel(const Vector3& numbers, const char* name) {
-  for (double x : numbers)
-    if (x != std::floor(x) || std::abs(x) > 1e9)
-      throw CompletionError(
-          "reading the parameters",
-          std::string("Parameter \"") + name +
-              "\" must be three whole numbers: voxels are counted. For mesh units choose the other box.");
-  return numbers.cast<int>();
-}
-
-VoxelBox wanted_box(const FilterRun& run, const MeshModel& layer) {
-  const ParameterValues& values = run.parameters;
-  const VolumeFrame& frame = volume_of(layer)->frame();
-  switch (static_cast<Where>(values.choice("Box"))) {
-    case Where::everywhere:
-      return frame.box;
-    case Where::voxels:
-      return box_in_volume(
-          frame, {as_voxel(values.point("BoxFrom"), "BoxFrom"), as_voxel(values.point("BoxTo"), "BoxTo")});
-    case Where::space:
-      return box_in_volume(frame, voxels_between(frame, values.point("BoxFrom"), values.point("BoxTo")));
-    case Where::selection:
-      break;
-  }
-  return box_in_volume(frame, selected_box(run, layer, values.layer("SliceLayer")));
 }
 
 // Changes the volume of the layer that the filter works on, within a box, or makes a layer with the result.

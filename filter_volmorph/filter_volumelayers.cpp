@@ -1,9 +1,7 @@
 #include "filter_volmorph/filter_volumelayers.h"
 
 #include <array>
-#include <cmath>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "common/core/error.h"
@@ -17,13 +15,6 @@ namespace {
 using Allocator = vcg::tri::Allocator<CMeshO>;
 
 const char* const stage = "finding the volume";
-
-// What a slice layer shows.
-struct SliceOrigin {
-  int layer = -1;  // the volume's, by its number in the project
-  VolumeFrame frame;
-  int axis = 2;
-};
 
 // Per-mesh attributes: MeshLab keeps them with the layer, and frees them with it.
 const char* const volume_name = "RangeVolume";
@@ -113,12 +104,12 @@ void replace_volume(MeshModel& layer, const RangeVolume& volume) {
 
 const RangeVolume* volume_of(const MeshModel& layer) { return attribute<RangeVolume>(layer, volume_name); }
 
-bool is_slice(const MeshModel& layer) { return attribute<SliceOrigin>(layer, slice_name) != nullptr; }
+const SliceOrigin* slice_origin(const MeshModel& layer) { return attribute<SliceOrigin>(layer, slice_name); }
 
 MeshModel& volume_layer(FilterRun& run) {
   MeshModel& current = *run.document.mm();
   if (volume_of(current) != nullptr) return current;
-  if (const SliceOrigin* slice = attribute<SliceOrigin>(current, slice_name)) {
+  if (const SliceOrigin* slice = slice_origin(current)) {
     MeshModel* layer = layer_with_number(run.document, slice->layer);
     if (layer != nullptr && volume_of(*layer) != nullptr) return *layer;
   }
@@ -150,56 +141,6 @@ MeshModel& add_slice_layer(MeshDocument& document, const MeshModel& volume, cons
   set_attribute(*layer, slice_name, SliceOrigin{number, frame, slice.axis});
   document.setCurrentMesh(layer->id());
   return *layer;
-}
-
-namespace {
-
-// By where the faces are, so that it does not matter what else was done to the slice.
-std::optional<VoxelBox> box_under_selection(const MeshModel& layer) {
-  const SliceOrigin& slice = *attribute<SliceOrigin>(layer, slice_name);
-  VoxelBox box;
-  bool any = false;
-  for (const CFaceO& face : layer.cm.face) {
-    if (face.IsD() || !face.IsS()) continue;
-    const Point3m middle = (face.cP(0) + face.cP(1) + face.cP(2)) / 3;
-    const Vector3 voxel = slice.frame.voxel(Vector3(middle[0], middle[1], middle[2]));
-    const VoxelIndex rounded(static_cast<int>(std::lround(voxel[0])), static_cast<int>(std::lround(voxel[1])),
-                             static_cast<int>(std::lround(voxel[2])));
-    box.low = any ? VoxelIndex(box.low.cwiseMin(rounded)) : rounded;
-    box.high = any ? VoxelIndex(box.high.cwiseMax(rounded)) : rounded;
-    any = true;
-  }
-  if (!any) return std::nullopt;
-  box.low[slice.axis] = slice.frame.box.low[slice.axis];
-  box.high[slice.axis] = slice.frame.box.high[slice.axis];
-  return box;
-}
-
-}  // namespace
-
-VoxelBox selected_box(const FilterRun& run, const MeshModel& volume, const MeshModel* slice) {
-  if (slice != nullptr && !is_slice(*slice))
-    throw CompletionError(stage, "The layer " + quoted(*slice) +
-                                     " is no slice of a volume. Choose a layer made by \"Range Volume: "
-                                     "Slice\", or none.");
-  std::optional<VoxelBox> box;
-  for (const MeshModel* layer : run.document.meshList) {
-    if (slice != nullptr ? layer != slice : !is_slice(*layer)) continue;
-    if (attribute<SliceOrigin>(*layer, slice_name)->layer != volume.id()) {
-      if (slice == nullptr) continue;
-      throw CompletionError(stage, "The slice " + quoted(*slice) + " was cut out of another volume.");
-    }
-    const std::optional<VoxelBox> selected = box_under_selection(*layer);
-    if (selected && box)
-      throw CompletionError(
-          stage, "More than one slice of this volume has selected faces. Choose one as \"SliceLayer\".");
-    if (selected) box = selected;
-  }
-  if (!box)
-    throw CompletionError(stage,
-                          "No face of a slice of this volume is selected. Make a slice with \"Range Volume: "
-                          "Slice\", and select faces of it with the rectangle of \"Select Faces\".");
-  return *box;
 }
 
 }  // namespace host

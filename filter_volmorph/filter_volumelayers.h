@@ -28,13 +28,18 @@ MeshModel& volume_layer(FilterRun& run);
 MeshModel& add_slice_layer(MeshDocument& document, const MeshModel& volume, const VolumeSlice& slice,
                            const QString& name);
 
-/// Whether the layer shows a slice.
-bool is_slice(const MeshModel& layer);
+/// What a slice layer shows.
+struct SliceOrigin {
+  int layer = -1;  ///< the volume's, by its number in the project
+  VolumeFrame frame;
+  int axis = 2;
+};
 
-/// The voxels under the selected faces of the slice layer that is given, or, without one, of the only slice
-/// of `volume` with a selection: their bounding rectangle, through the whole depth. Throws CompletionError
-/// when there is no such layer or no selected face.
-VoxelBox selected_box(const FilterRun& run, const MeshModel& volume, const MeshModel* slice);
+/// Null where the layer shows no slice.
+const SliceOrigin* slice_origin(const MeshModel& layer);
+
+/// Whether the layer shows a slice.
+inline bool is_slice(const MeshModel& layer) { return slice_origin(layer) != nullptr; }
 
 }  // namespace host
 }  // namespace meshcomplete

@@ -135,5 +135,43 @@ class BadInputOfTriangleFan(BadInput):
     filter = "Close Holes: Triangle Fan"
 
 
+class BadInputOfRangeVolumes(MeshLabTest):
+    def band_volume(self, *steps):
+        return self.server(self.band(), [step("Range Volume: Voxelize Mesh"), *steps])
+
+    def test_a_cloud_is_no_scan(self):
+        points = self.folder / "points.ply"
+        mesh_files.write_ply(points, mesh_files.band()[0], [])
+        self.assert_refused(self.server(points, [step("Range Volume: Merge Scans")]), "has no faces")
+
+    def test_voxel_sizes(self):
+        for name, sight in (("Merge Scans", {"LineOfSight": 4}), ("Voxelize Mesh", {})):
+            run = self.server(self.band(), [step(f"Range Volume: {name}", VoxelSize=0, **sight)])
+            self.assert_refused(run, 'Parameter "VoxelSize" must be greater than 0')
+            run = self.server(self.band(), [step(f"Range Volume: {name}", VoxelSize=1e-5, **sight)])
+            self.assert_refused(run, "Voxels of 1e-05 would need about", "would fit")
+
+    def test_no_volume(self):
+        for name in ("Morphology", "Fill", "Extract Surface", "Slice"):
+            run = self.server(self.band(), [step(f"Range Volume: {name}")])
+            self.assert_refused(run, 'The layer "band.ply" holds no range volume.')
+
+    def test_boxes_and_operators(self):
+        morphology = "Range Volume: Morphology"
+        self.assert_refused(self.band_volume(step(morphology, Operators="d2 q1")), 'Unknown operator "q"')
+        self.assert_refused(self.band_volume(step(morphology, Box=3)), "No face of a slice of this volume is selected")
+        self.assert_refused(self.band_volume(step(morphology, Box=1, BoxFrom="900 900 900", BoxTo="901 901 901")),
+                            "lies outside the volume")
+
+    def test_files(self):
+        volume = self.folder / "volume.vdb"
+        for content in (None, b"", b"no volume at all\n" * 100):
+            if content is not None:
+                volume.write_bytes(content)
+            self.assert_refused(self.server(self.band(), [step("Range Volume: Open", File=volume)]), str(volume))
+        self.assert_refused(self.band_volume(step("Range Volume: Save", File=self.folder / "nowhere/volume.vdb")),
+                            "cannot be written")
+
+
 if __name__ == "__main__":
     sys.exit(unittest.main(verbosity=2))

@@ -22,6 +22,7 @@ CURVE_UNFOLDING = "Close Holes: Curve Unfolding"
 ATOMIC_VOLUMES = "Close Holes: Atomic Volumes"
 POISSON_DRIVEN = "Close Holes: Poisson-driven"
 TRIANGLE_FAN = "Close Holes: Triangle Fan"
+VOXELIZE = "Range Volume: Voxelize Mesh"
 
 
 class Screen:
@@ -176,6 +177,16 @@ class Window(unittest.TestCase):
 
     def test_triangle_fan(self):
         self.close_holes(TRIANGLE_FAN, "triangle-fan")
+
+    def test_range_volume(self):
+        mesh = self.home / "band.ply"
+        mesh_files.write_ply(mesh, *mesh_files.band())
+        main_window = self.open(mesh)
+        self.apply(self.open_dialog(main_window, "range-volume", VOXELIZE))
+        self.wait_for("the filter", lambda: f"Applied filter {VOXELIZE}" in self.log())
+        self.screen.picture("range-volume-3-applied")
+        self.assertRegex(self.log(), r"Volume of \d+ x \d+ x \d+ voxels of \S+: \d+ seen, \d+ unseen, \d+ empty")
+        self.assertNotIn("Filter Failure", self.screen.windows())
 
     def test_a_failure_is_a_message(self):
         mesh = self.home / "cloud.ply"

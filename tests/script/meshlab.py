@@ -17,6 +17,12 @@ CLOSE_HOLES = [("RichBool", "Selected", "false"), ("RichInt", "MaxHoleEdges", "0
                ("RichAbsPerc", "MaxHolePerimeter", "0"), ("RichBool", "KeepLargest", "false"),
                ("RichBool", "NewFaceSelected", "false"), ("RichBool", "AsNewLayer", "false")]
 
+BOX = [("RichEnum", "Box", "0"), ("RichPoint3f", "BoxFrom", "0 0 0"), ("RichPoint3f", "BoxTo", "0 0 0"),
+       ("RichEnum", "SliceLayer", "0")]
+DIFFUSION = [("RichInt", "Iterations", "100"), ("RichInt", "Reach", "32"), ("RichBool", "LineOfSight", "true"),
+             ("RichBool", "Normals", "true")]
+RESULT = [("RichBool", "Measure", "true"), ("RichBool", "AsNewLayer", "false")]
+
 # MeshLab 2020.09 stops with an assertion unless a script gives every parameter, in the filter's order.
 FILTERS = {
     "Close Holes: Curve Unfolding": CLOSE_HOLES + [
@@ -40,6 +46,22 @@ FILTERS = {
         ("RichInt", "Rings", "3"), ("RichAbsPerc", "CushionRadius", "0"), ("RichEnum", "Fairing", "0")],
     "Close Holes: Triangle Fan": CLOSE_HOLES + [("RichBool", "AsPublished", "false"), ("RichEnum", "Spanning", "0")],
     "Check Completion": [("RichBool", "SelfIntersections", "true")],
+    "Range Volume: Merge Scans": [
+        ("RichAbsPerc", "VoxelSize", "0.06"), ("RichAbsPerc", "Ramp", "0.18"), ("RichFloat", "MaxMemory", "4"),
+        ("RichEnum", "LineOfSight", "4"), ("RichPoint3f", "Viewpoint", "0 0 0"), ("RichBool", "Carving", "true"),
+        ("RichBool", "Surroundings", "true"),
+        ("RichAbsPerc", "LongestEdge", "0"), ("RichFloat", "GrazingAngle", "75"), ("RichFloat", "GrazingPower", "1"),
+        ("RichAbsPerc", "BoundaryFalloff", "0")],
+    "Range Volume: Voxelize Mesh": [("RichAbsPerc", "VoxelSize", "0.1"), ("RichAbsPerc", "Ramp", "0"),
+                                    ("RichFloat", "MaxMemory", "4")],
+    "Range Volume: Open": [("RichOpenFile", "File", "")],
+    "Range Volume: Save": [("RichSaveFile", "File", "")],
+    "Range Volume: Morphology": [("RichString", "Operators", "d2 e2")] + BOX + DIFFUSION + RESULT,
+    "Range Volume: Fill": DIFFUSION + BOX + RESULT,
+    "Range Volume: Extract Surface": [("RichBool", "ObservedOnly", "false"), ("RichInt", "SmallestComponent", "0")],
+    "Range Volume: Slice": [("RichEnum", "Axis", "2"), ("RichBool", "Middle", "true"), ("RichInt", "Position", "0"),
+                            ("RichEnum", "View", "0"), ("RichString", "Folder", "")],
+    "Select All": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select None": [("RichBool", "allFaces", "true"), ("RichBool", "allVerts", "true")],
     "Select Border": [],
 }
@@ -58,7 +80,8 @@ def script_text(steps):
     for name, parameters in steps:
         lines.append(f" <filter name={quoteattr(name)}>")
         for kind, key, value in parameters:
-            more = {"RichAbsPerc": ' min="0" max="1"', "RichEnum": ' enum_cardinality="1" enum_val0="x"'}.get(kind, "")
+            more = {"RichAbsPerc": ' min="0" max="1"', "RichEnum": ' enum_cardinality="1" enum_val0="x"',
+                    "RichOpenFile": ' exts_cardinality="1" exts_val0="vdb"', "RichSaveFile": ' ext="vdb"'}.get(kind, "")
             held = f"value={quoteattr(value)}"
             if kind == "RichPoint3f":
                 held = 'x="{}" y="{}" z="{}"'.format(*value.split())
@@ -111,12 +134,13 @@ class MeshLabTest(unittest.TestCase):
         self.folder = Path(holder.name)
 
     def server(self, mesh, steps, attributes=(), output="out.ply"):
-        """Runs a script on a mesh, or on several, each a layer; the last one is the current layer."""
+        """Runs a script on a mesh, on several, each a layer, or on a project; the last layer is the current one."""
         out, log, script = self.folder / output, self.folder / "log.txt", self.folder / "script.mlx"
         for stale in (out, log):
             stale.unlink(missing_ok=True)
         meshes = mesh if isinstance(mesh, list) else [mesh]
-        arguments = ["-l", str(log), "-i", *map(str, meshes), "-o", str(out)]
+        opened = ["-p" if str(mesh).endswith(".mlp") else "-i", *map(str, meshes)]
+        arguments = ["-l", str(log), *opened, "-o", str(out)]
         if attributes:
             arguments += ["-m", *attributes]
         if steps:

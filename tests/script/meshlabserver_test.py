@@ -7,6 +7,9 @@ import unittest
 import mesh_files
 from meshlab import SOURCE, MeshLabTest, step
 
+sys.path.insert(0, str(SOURCE / "tests/support"))
+import range_scans  # noqa: E402
+
 ELEPHANT = SOURCE / ".cache/data/elephant-with-holes.off"
 
 
@@ -236,6 +239,61 @@ class TriangleFan(MeshLabTest):
                                 ({"Spanning": 1}, '"Spanning" says which faces "AsPublished" removes')):
             with self.subTest(**values):
                 self.assert_refused(self.close(mesh, **values), message)
+
+
+class RangeVolumes(MeshLabTest):
+    """From scans with poses in a project to a closed surface."""
+
+    def scans(self):
+        return range_scans.make_project(self.folder)
+
+    def assert_surface(self, run):
+        """One closed surface with one handle, where the solid ends."""
+        self.assertTrue(run.saved, run)
+        mesh = mesh_files.Ply(run.output)
+        self.assertTrue(mesh_files.is_closed_manifold(mesh.faces), run)
+        euler = len(mesh.positions) - len(mesh_files.edge_counts(mesh.faces)[0]) + len(mesh.faces)
+        self.assertEqual(euler, 0, "a surface of genus 1")
+        ball = [math.dist(point, (0, 0, 0)) for point in mesh.positions if point[0] < 0]
+        self.assertLess(max(abs(radius - range_scans.RADIUS) for radius in ball), 0.06)
+        return run.output.read_bytes()
+
+    def test_merged_stripped_saved_and_opened(self):
+        volume = self.folder / "volume.vdb"
+        extract = step("Range Volume: Extract Surface")
+        run = self.server(self.scans(), [
+            step("Range Volume: Merge Scans"), step("Range Volume: Morphology", Operators="e60"),
+            step("Range Volume: Save", File=volume), extract])
+        surface = self.assert_surface(run)
+        self.assertRegex(run.log, r"Volume of \d+ x \d+ x \d+ voxels of 0.06: \d+ seen, \d+ unseen, \d+ empty")
+        self.assertRegex(run.log, r"After: \d+ vertices, \d+ faces, genus 1, 1 components, 0 boundary loops")
+        self.assertTrue(volume.exists(), run)
+        run = self.server(self.band(), [step("Range Volume: Open", File=volume), extract])
+        self.assertEqual(self.assert_surface(run), surface)
+
+    def test_the_selection_in_a_slice(self):
+        """All of a slice is selected: the operator works everywhere."""
+        run = self.server(self.scans(), [
+            step("Range Volume: Merge Scans"), step("Range Volume: Slice"), step("Select All"),
+            step("Range Volume: Morphology", Operators="e60", Box=3, Measure="false"),
+            step("Range Volume: Extract Surface")])
+        self.assert_surface(run)
+
+    def test_images_of_slices(self):
+        images = self.folder / "images"
+        run = self.server(self.scans(), [step("Range Volume: Merge Scans"), step("Range Volume: Slice", Folder=images)])
+        self.assertEqual(run.code, 0, run)
+        depth = int(re.search(r"Volume of \d+ x \d+ x (\d+) voxels", run.log)[1])
+        self.assertEqual(sorted(path.name for path in images.iterdir()), [f"z_{i:04}.png" for i in range(depth)])
+
+    def test_a_mesh_with_holes_is_filled(self):
+        run = self.server(self.band(), [
+            step("Range Volume: Voxelize Mesh", VoxelSize=0.08), step("Range Volume: Fill", Iterations=40),
+            step("Range Volume: Extract Surface")])
+        self.assertTrue(run.saved, run)
+        mesh = mesh_files.Ply(run.output)
+        self.assertTrue(mesh_files.is_closed_manifold(mesh.faces), run)
+        self.assertRegex(run.log, r"After: .* genus 0, 1 components, 0 boundary loops")
 
 
 class CheckCompletion(MeshLabTest):
