@@ -71,6 +71,15 @@ float weight_of(const NormalTensor& tensor, const Neighbour& neighbour) {
   return neighbour.nearness * (least + (1 - least) * squared * squared);
 }
 
+// Both voxels of a pair count each other alike. Weighed by the neighbour's normals alone, the distances drift
+// to where the surface curves away, as a surface of more curvature would: the cap over a hole in a ball
+// becomes a hump. By the voxel's alone they do not drift at all, and the cap sinks towards a plane.
+NormalTensor between(const NormalTensor& a, const NormalTensor& b) {
+  NormalTensor mean;
+  for (int k = 0; k < 6; ++k) mean[k] = std::int16_t((int(a[k]) + int(b[k])) / 2);
+  return mean;
+}
+
 // No direction is known: what a tensor of all directions alike says.
 const NormalTensor undirected = {10922, 10922, 10922, 0, 0, 0};
 
@@ -190,8 +199,10 @@ void make_weights(DiffusionBlock& block, const Around& around) {
   for (int k = 0; k < neighbours; ++k) {
     const Neighbour& neighbour = all_neighbours[k];
     for (int number = 0; number < block_voxels; ++number) {
-      const int from = halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz);
-      const float weight = full_weight * weight_of(around.tensors[from], neighbour);
+      const NormalTensor& here = around.tensors[halo_number(number, 0, 0, 0)];
+      const NormalTensor& there =
+          around.tensors[halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz)];
+      const float weight = full_weight * weight_of(between(here, there), neighbour);
       block.weights[k * block_voxels + number] = std::uint8_t(std::max(1L, std::lround(weight)));
     }
   }
