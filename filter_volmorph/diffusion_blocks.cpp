@@ -146,10 +146,13 @@ std::vector<DiffusionBlock> diffusion_blocks(const RangeVolume& volume, const Vo
   return blocks;
 }
 
-RangeVolume with_distances(const RangeVolume& volume, const std::vector<DiffusionBlock>& blocks) {
+RangeVolume with_distances(const RangeVolume& volume, const std::vector<DiffusionBlock>& blocks,
+                           const Progress& progress) {
   VolumeGrids grids = volume.grids();
   openvdb::FloatGrid::Ptr distance = grids.distance->deepCopy();
+  std::size_t visited = 0;
   for (const DiffusionBlock& block : blocks) {
+    if (visited++ % leaves_between_checks == 0) progress.check();
     const std::bitset<block_voxels> written = block.within & block.known;
     if (written.none()) continue;
     auto* leaf = distance->tree().touchLeaf(to_coord(block_side * block.index));

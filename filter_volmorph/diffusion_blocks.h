@@ -40,6 +40,7 @@ std::vector<DiffusionBlock> diffusion_blocks(const RangeVolume& volume, const Vo
                                              bool normals, const Progress& progress = Progress());
 
 /// The volume with the distances of the voxels that are within and known.
-RangeVolume with_distances(const RangeVolume& volume, const std::vector<DiffusionBlock>& blocks);
+RangeVolume with_distances(const RangeVolume& volume, const std::vector<DiffusionBlock>& blocks,
+                           const Progress& progress = Progress());
 
 }  // namespace meshcomplete
