@@ -62,10 +62,9 @@ openvdb::MaskTree voxels_within_reach(const RangeVolume& volume, const VoxelBox&
   return within;
 }
 
-NormalTensor tensor_of(const Eigen::Vector3f& n) {
+StoredNormal stored(const Eigen::Vector3f& n) {
   const auto part = [](float x) { return std::int16_t(std::lround(32767 * x)); };
-  return {part(n.x() * n.x()), part(n.y() * n.y()), part(n.z() * n.z()),
-          part(n.x() * n.y()), part(n.x() * n.z()), part(n.y() * n.z())};
+  return {part(n.x()), part(n.y()), part(n.z())};
 }
 
 // Writes what the volume knows of the block.
@@ -81,11 +80,11 @@ void read_block(const VoxelReader& reader, const openvdb::FloatGrid::ConstAccess
     block.empty[number] = block.within[number] && reader.state(at) == VoxelState::empty;
     const std::optional<Eigen::Vector3f> normal = normals ? reader.normal(at) : std::nullopt;
     if (!normal) continue;
-    block.tensors.resize(block_voxels);
+    block.normals.resize(block_voxels);
     block.directed[number] = true;
-    block.tensors[number] = tensor_of(*normal);
+    block.normals[number] = stored(*normal);
   }
-  if (normals && block.within.any()) block.tensors.resize(block_voxels);
+  if (normals && block.within.any()) block.normals.resize(block_voxels);
 }
 
 std::int32_t number_of(const std::vector<DiffusionBlock>& blocks, const VoxelIndex& index) {
@@ -147,10 +146,13 @@ std::vector<DiffusionBlock> diffusion_blocks(const RangeVolume& volume, const Vo
   return blocks;
 }
 
-RangeVolume with_distances(const RangeVolume& volume, const std::vector<DiffusionBlock>& blocks) {
+RangeVolume with_distances(const RangeVolume& volume, const std::vector<DiffusionBlock>& blocks,
+                           const Progress& progress) {
   VolumeGrids grids = volume.grids();
   openvdb::FloatGrid::Ptr distance = grids.distance->deepCopy();
+  std::size_t visited = 0;
   for (const DiffusionBlock& block : blocks) {
+    if (visited++ % leaves_between_checks == 0) progress.check();
     const std::bitset<block_voxels> written = block.within & block.known;
     if (written.none()) continue;
     auto* leaf = distance->tree().touchLeaf(to_coord(block_side * block.index));

@@ -18,20 +18,23 @@ constexpr int neighbours = 26;
 // neighbours are known, theirs is the distance.
 constexpr double weight_across = 0.01;
 
-// Sweeps of relaxing the tensors for each step of reach. Fronts carry the tensors of the nearest rim on
-// unturned, which closes a round hole with a cone; relaxed, they turn evenly from rim to rim. A sweep moves
-// them by about a voxel, so that this is enough for what lies across half a hole to tell.
+// Sweeps of relaxing the normals for each step of reach. Fronts carry the normals of the nearest rim on
+// unturned, which closes a round hole with a cone; relaxed, they turn evenly from rim to rim. A plain sweep
+// moves them by less than a voxel; with Chebyshev's factors so many do across a hole as wide as the reach.
 constexpr int sweeps_per_step = 2;
 
-constexpr float full_tensor = 32767;  // a whole part, as it is stored
+// How much of a wave of unit wave number, per voxel, a plain sweep takes: half the variance of the binomial
+// blur without its middle.
+constexpr double part_taken = 2. / 7;
+
+constexpr float unit = 32767;  // 1, as it is stored
 constexpr float full_weight = 255;
 
 // From a voxel to one of its neighbours.
 struct Neighbour {
   int dx, dy, dz;
   float nearness;  // 1 for a face, halved for an edge and again for a corner: the binomial blur
-  std::array<float, 6>
-      direction;  // u u^T of the unit direction, so that a tensor's share is the sum of products
+  std::array<float, 3> direction;  // unit
 };
 
 std::array<Neighbour, neighbours> make_neighbours() {
@@ -41,46 +44,42 @@ std::array<Neighbour, neighbours> make_neighbours() {
     if (place == 13) continue;
     const int dx = place / 9 - 1, dy = place / 3 % 3 - 1, dz = place % 3 - 1;
     const int steps = dx * dx + dy * dy + dz * dz;
-    const auto part = [&](int product, int times) { return float(times * product) / float(steps); };
-    result[count++] = {dx,
-                       dy,
-                       dz,
-                       std::ldexp(1.f, 1 - steps),
-                       {part(dx * dx, 1), part(dy * dy, 1), part(dz * dz, 1), part(dx * dy, 2),
-                        part(dx * dz, 2), part(dy * dz, 2)}};
+    const float length = std::sqrt(float(steps));
+    result[count++] = {
+        dx, dy, dz, std::ldexp(1.f, 1 - steps), {float(dx) / length, float(dy) / length, float(dz) / length}};
   }
   return result;
 }
 
 const std::array<Neighbour, neighbours> all_neighbours = make_neighbours();
 
-// cos^2 of the angle between a neighbour's direction and the normals there.
-float share_along(const NormalTensor& tensor, const Neighbour& neighbour) {
-  float sum = 0;
-  for (int k = 0; k < 6; ++k) sum += float(tensor[k]) * neighbour.direction[k];
-  return std::clamp(sum / full_tensor, 0.f, 1.f);
+// cos^2 of the angle between a neighbour's direction and the normal; of a mean of normals about the mean of
+// it, a third where none is known.
+float share_along(const StoredNormal& normal, const Neighbour& neighbour) {
+  const float x = normal[0] / unit, y = normal[1] / unit, z = normal[2] / unit;
+  const float along = x * neighbour.direction[0] + y * neighbour.direction[1] + z * neighbour.direction[2];
+  const float rest = 1 - (x * x + y * y + z * z);
+  return std::clamp(along * along + rest / 3, 0.f, 1.f);
 }
 
-// The share across the normals to its fourth power: the higher, the less of a surface reaches another one
-// that is parallel and near. So two faces six voxels apart stay apart over a gap of 24; with the square they
-// merge.
-float weight_of(const NormalTensor& tensor, const Neighbour& neighbour) {
-  const float perpendicular = 1 - share_along(tensor, neighbour);
-  const float squared = perpendicular * perpendicular;
+// The share across the normals to its eighth power: the higher, the less of a surface reaches another one
+// that is parallel and near, and the less the inside and the outside reach what lies over a hole.
+float weight_of(float share, const Neighbour& neighbour) {
+  const float squared = (1 - share) * (1 - share), fourth = squared * squared;
   const float least = float(weight_across);
-  return neighbour.nearness * (least + (1 - least) * squared * squared);
+  return neighbour.nearness * (least + (1 - least) * fourth * fourth);
 }
 
-// No direction is known: what a tensor of all directions alike says.
-const NormalTensor undirected = {10922, 10922, 10922, 0, 0, 0};
+// No direction is known.
+const StoredNormal undirected = {0, 0, 0};
 
 struct Around {
-  Halo<NormalTensor> tensors;
+  Halo<StoredNormal> normals;
   Halo<std::uint8_t> directed;
 
   void read(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block) {
-    gather(blocks, block, undirected, tensors, [](const DiffusionBlock& from, int number) {
-      return from.directed[number] ? from.tensors[number] : undirected;
+    gather(blocks, block, undirected, normals, [](const DiffusionBlock& from, int number) {
+      return from.directed[number] ? from.normals[number] : undirected;
     });
     gather(blocks, block, std::uint8_t(0), directed,
            [](const DiffusionBlock& from, int number) { return std::uint8_t(from.directed[number]); });
@@ -94,27 +93,27 @@ int halo_number(int number, int dx, int dy, int dz) {
 
 struct Arrival {
   int number;
-  NormalTensor tensor;
+  StoredNormal normal;
 };
 
-// The voxels of a block that have neighbours with a tensor, but none yet.
+// The voxels of a block that have neighbours with a normal, but none yet.
 std::vector<Arrival> arrivals(const DiffusionBlock& block, const Around& around) {
   std::vector<Arrival> result;
   for (int number = 0; number < block_voxels; ++number) {
     if (!block.within[number] || block.directed[number]) continue;
     float total = 0;
-    std::array<float, 6> sum{};
+    std::array<float, 3> sum{};
     for (const Neighbour& neighbour : all_neighbours) {
       const int from = halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz);
       if (!around.directed[from]) continue;
-      const float weight = weight_of(around.tensors[from], neighbour);
+      const float weight = weight_of(share_along(around.normals[from], neighbour), neighbour);
       total += weight;
-      for (int k = 0; k < 6; ++k) sum[k] += weight * float(around.tensors[from][k]);
+      for (int k = 0; k < 3; ++k) sum[k] += weight * float(around.normals[from][k]);
     }
     if (total == 0) continue;
-    NormalTensor tensor;
-    for (int k = 0; k < 6; ++k) tensor[k] = std::int16_t(std::lround(sum[k] / total));
-    result.push_back({number, tensor});
+    StoredNormal normal;
+    for (int k = 0; k < 3; ++k) normal[k] = std::int16_t(std::lround(sum[k] / total));
+    result.push_back({number, normal});
   }
   return result;
 }
@@ -140,20 +139,22 @@ bool spread(std::vector<DiffusionBlock>& blocks, std::vector<char>& fresh, const
     any = any || fresh[i];
     for (const Arrival& arrival : arrived[i]) {
       blocks[i].directed[arrival.number] = true;
-      blocks[i].tensors[arrival.number] = arrival.tensor;
+      blocks[i].normals[arrival.number] = arrival.normal;
     }
   }
   return any;
 }
 
-// The tensors of the voxels within: means of all neighbours', whatever their direction.
-std::vector<NormalTensor> relaxed(const DiffusionBlock& block, const Around& around) {
-  std::array<std::array<float, block_voxels>, 6> sums{};
+// Into `normals`, those of the sweep before the last, what the voxels within have after the next: from there
+// `factor` times the way to the means of all neighbours, whatever their direction.
+void relax_block(const DiffusionBlock& block, const Around& around, float factor,
+                 std::vector<StoredNormal>& normals) {
+  std::array<std::array<float, block_voxels>, 3> sums{};
   std::array<float, block_voxels> total{};
   Halo<float> part;
-  for (int k = -1; k < 6; ++k) {  // the sum of weights, then the parts
+  for (int k = -1; k < 3; ++k) {  // the sum of weights, then the parts
     for (int i = 0; i < BlockValues::count; ++i)
-      part[i] = around.directed[i] ? (k < 0 ? 1.f : float(around.tensors[i][std::max(k, 0)])) : 0.f;
+      part[i] = around.directed[i] ? (k < 0 ? 1.f : float(around.normals[i][std::max(k, 0)])) : 0.f;
     std::array<float, block_voxels>& sum = k < 0 ? total : sums[k];
     for (const Neighbour& neighbour : all_neighbours)
       for (int row = 0; row < block_voxels; row += block_side) {
@@ -161,37 +162,65 @@ std::vector<NormalTensor> relaxed(const DiffusionBlock& block, const Around& aro
         for (int z = 0; z < block_side; ++z) sum[row + z] += neighbour.nearness * part[from + z];
       }
   }
-  std::vector<NormalTensor> tensors = block.tensors;
   for (int number = 0; number < block_voxels; ++number)
-    for (int k = 0; k < 6 && block.within[number] && total[number] > 0; ++k)
-      tensors[number][k] = std::int16_t(std::lround(sums[k][number] / total[number]));
-  return tensors;
+    for (int k = 0; k < 3 && block.within[number] && total[number] > 0; ++k) {
+      const float before = normals[number][k], mean = sums[k][number] / total[number];
+      const float next = before + factor * (mean - before);
+      normals[number][k] = std::int16_t(std::lround(std::clamp(next, -unit, unit)));
+    }
 }
 
-void relax(std::vector<DiffusionBlock>& blocks, int sweeps, const Progress& progress) {
-  std::vector<std::vector<NormalTensor>> next(blocks.size());
+// Jacobi's sweeps, quickened by Chebyshev's factors (the semi-iterative method) for waves no longer than
+// twice the reach: a mean of neighbours only shrinks waves, so that longer ones do not grow either.
+void relax(std::vector<DiffusionBlock>& blocks, int reach, const Progress& progress) {
+  const double wave_number = M_PI / reach;
+  const double shrink = std::max(0., 1 - part_taken * wave_number * wave_number);
+  const int sweeps = sweeps_per_step * reach;
+  std::vector<std::vector<StoredNormal>> other(blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (blocks[i].within.any()) other[i] = blocks[i].normals;
+  double factor = 1;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for_ranges(blocks.size(), blocks_at_once, progress, [&](std::size_t begin, std::size_t end) {
       Around around;
       for (std::size_t i = begin; i < end; ++i) {
         if (blocks[i].within.none()) continue;
         around.read(blocks, blocks[i]);
-        next[i] = relaxed(blocks[i], around);
+        relax_block(blocks[i], around, float(factor), other[i]);
       }
       progress.advance(double(end - begin) / double(blocks.size()) / sweeps);
     });
     for (std::size_t i = 0; i < blocks.size(); ++i)
-      if (blocks[i].within.any()) blocks[i].tensors.swap(next[i]);
+      if (blocks[i].within.any()) blocks[i].normals.swap(other[i]);
+    factor = 1 / (1 - shrink * shrink * (sweep == 0 ? 0.5 : 0.25 * factor));
   }
 }
 
+// Means of different normals are short. For the weights they count as much as any other.
+void normalise(DiffusionBlock& block) {
+  for (int number = 0; number < block_voxels; ++number) {
+    if (!block.within[number]) continue;
+    StoredNormal& normal = block.normals[number];
+    const float length = std::sqrt(float(normal[0]) * float(normal[0]) + float(normal[1]) * float(normal[1]) +
+                                   float(normal[2]) * float(normal[2]));
+    for (int k = 0; k < 3 && length > 0; ++k)
+      normal[k] = std::int16_t(std::lround(unit * (float(normal[k]) / length)));
+  }
+}
+
+// Both voxels of a pair count each other alike. Weighed by the neighbour's normals alone, the distances drift
+// against the turning of the normals, twice as much as keeps a surface's curvature: the cap over a hole in a
+// ball becomes a hump. Weighed by the voxel's own they do not drift at all, and the cap sinks.
 void make_weights(DiffusionBlock& block, const Around& around) {
   block.weights.resize(neighbours * block_voxels);
   for (int k = 0; k < neighbours; ++k) {
     const Neighbour& neighbour = all_neighbours[k];
     for (int number = 0; number < block_voxels; ++number) {
-      const int from = halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz);
-      const float weight = full_weight * weight_of(around.tensors[from], neighbour);
+      const StoredNormal& here = around.normals[halo_number(number, 0, 0, 0)];
+      const StoredNormal& there =
+          around.normals[halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz)];
+      const float share = (share_along(here, neighbour) + share_along(there, neighbour)) / 2;
+      const float weight = full_weight * weight_of(share, neighbour);
       block.weights[k * block_voxels + number] = std::uint8_t(std::max(1L, std::lround(weight)));
     }
   }
@@ -210,7 +239,8 @@ void make_weights_by_normals(std::vector<DiffusionBlock>& blocks, int reach, con
   std::vector<char> fresh(blocks.size(), 1);
   for (int step = 0; step < reach && spread(blocks, fresh, progress); ++step)
     progress.update(0.2 * step / reach);
-  relax(blocks, sweeps_per_step * reach, progress.part(0.2, 0.9, stage));
+  relax(blocks, reach, progress.part(0.2, 0.9, stage));
+  for_each(blocks.size(), blocks_at_once, progress, [&](std::size_t i) { normalise(blocks[i]); });
   const Progress weighing = progress.part(0.9, 1, stage);
   for_ranges(blocks.size(), blocks_at_once, weighing, [&](std::size_t begin, std::size_t end) {
     Around around;
@@ -221,7 +251,7 @@ void make_weights_by_normals(std::vector<DiffusionBlock>& blocks, int reach, con
     }
     weighing.advance(double(end - begin) / double(blocks.size()));
   });
-  for (DiffusionBlock& block : blocks) block.tensors = {};
+  for (DiffusionBlock& block : blocks) block.normals = {};
   progress.update(1);
 }
 

@@ -34,9 +34,9 @@ void gather(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& cen
 /// voxel of a block, above 0: nearer ones count more.
 std::vector<std::uint8_t> weights_by_distance();
 
-/// Spreads the tensors from the seen voxels to all that are within reach of one and relaxes them, so that
+/// Spreads the normals from the seen voxels to all that are within reach of one and relaxes them, so that
 /// they turn evenly from rim to rim, then gives every block that has voxels within its weights: by distance,
-/// and more where the neighbour lies perpendicular to the normals at the neighbour. The tensors are gone
+/// and more where the neighbour lies perpendicular to the normals at both voxels. The normals are gone
 /// afterwards. Cost: two passes over the voxels within for each step of `reach`; threaded.
 void make_weights_by_normals(std::vector<DiffusionBlock>& blocks, int reach,
                              const Progress& progress = Progress());

@@ -125,7 +125,7 @@ RangeVolume diffuse(const RangeVolume& volume, const VoxelBox& box, const Diffus
       blocks[changing[i]].known = filled[i].known;
     });
   }
-  RangeVolume result = with_distances(volume, blocks);
+  RangeVolume result = with_distances(volume, blocks, progress);
   progress.update(1);
   return result;
 }

@@ -135,6 +135,80 @@ TEST(VolumeDiffusion, closes_a_hole_in_a_torus) {
   }
 }
 
+// A hole round an axis from `middle`, `height` from it: nothing seen within half of `width`, and nothing
+// known there up to `looked` above the surface.
+struct Hole {
+  Vector3 middle, axis;
+  double height, width, looked;
+
+  bool hides(const Vector3& at) const {
+    const Vector3 from = at - middle;
+    const double along = from.dot(axis);
+    return along > 0 && (from - along * axis).norm() < width / (2 * height) * from.norm();
+  }
+};
+
+// Where the surface crosses the axis, from within; the box's border where it does not.
+double height_over(const RangeVolume& volume, const Hole& hole) {
+  double height = 0;
+  const auto distance = [&](double along) {
+    return volume.at((hole.middle + along * hole.axis).array().round().cast<int>()).distance;
+  };
+  while (volume.frame().box.contains((hole.middle + (height + 1) * hole.axis).array().round().cast<int>())) {
+    const double here = distance(height), next = distance(height + 1);
+    if (here < 0 && next >= 0) return height + here / (here - next);
+    ++height;
+  }
+  return height;
+}
+
+constexpr double never = 1e9;
+
+RangeVolume sphere_with_hole(const Hole& hole, int border) {
+  const int half = int(hole.height) + border;
+  const VoxelBox box{{-half, -half, 0}, {half, half, half}};
+  return scanned(box, [&](const Vector3& at) {
+    const double distance = at.norm() - hole.height;
+    const bool hidden = hole.hides(at);
+    const Vector3 normal = at.norm() > 0 ? Vector3(at.normalized()) : hole.axis;
+    return Sample{distance, normal, hidden, hidden && distance > hole.looked};
+  });
+}
+
+TEST(VolumeDiffusion, closes_holes_in_spheres_at_the_spheres_height) {
+  struct Case {
+    double radius, width;
+    int border;
+  };
+  const Case cases[] = {{22, 10, 6}, {22, 23, 6}, {22, 23, 14}, {22, 30, 6}, {40, 30, 6}};
+  for (const Case& c : cases)
+    for (const double looked : {8., never}) {
+      const Hole hole{Vector3::Zero(), Vector3::UnitZ(), c.radius, c.width, looked};
+      const RangeVolume volume = sphere_with_hole(hole, c.border);
+      EXPECT_NEAR(height_over(diffuse(volume, volume.frame().box, {}), hole), c.radius, 1.25)
+          << c.radius << ' ' << c.width << ' ' << c.border << ' ' << looked;
+    }
+}
+
+TEST(VolumeDiffusion, closes_holes_in_a_torus_at_its_height) {
+  const double ring = 24, tube = 12;
+  for (const double width : {10., 20.})
+    for (const double looked : {8., never}) {
+      const Hole hole{{ring, 0, 0}, Vector3::UnitX(), tube, width, looked};
+      const RangeVolume volume = scanned({{0, -24, -18}, {42, 24, 18}}, [&](const Vector3& at) {
+        const double flat = std::max(at.head<2>().norm(), 1.);
+        const Vector3 middle = Vector3(at.x(), at.y(), 0) * (ring / flat);
+        const Vector3 from = at - middle;
+        const double distance = from.norm() - tube;
+        const Vector3 normal = from.norm() > 0 ? Vector3(from.normalized()) : hole.axis;
+        const bool hidden = hole.hides(at);
+        return Sample{distance, normal, hidden, hidden && distance > hole.looked};
+      });
+      EXPECT_NEAR(height_over(diffuse(volume, volume.frame().box, {}), hole), tube, 1.25)
+          << width << ' ' << looked;
+    }
+}
+
 TEST(VolumeDiffusion, merges_two_near_holes_without_line_of_sight_and_normals) {
   for (const bool looked_through : {false, true}) {
     const MeshStatistics found = filled(two_bodies_scanned(looked_through), diffusion(false, false));
