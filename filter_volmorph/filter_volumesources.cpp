@@ -4,24 +4,21 @@
 #include <utility>
 
 #include "common/core/error.h"
+#include "common/core/stage_clock.h"
 #include "common/host/close_holes_parameters.h"
 #include "common/host/meshlab_version.h"
 #include "common/host/other_layers.h"
 #include "filter_volmorph/filter_volumelayers.h"
 #include "filter_volmorph/filter_volumelog.h"
+#include "filter_volmorph/filter_volumescans.h"
 #include "filter_volmorph/scan_merge.h"
+#include "filter_volmorph/surroundings.h"
 #include "filter_volmorph/volume_file.h"
 #include "filter_volmorph/voxelize_mesh.h"
 
 namespace meshcomplete {
 namespace host {
 namespace {
-
-const char* const reading = "reading the scans";
-
-enum class Sight { automatic, camera, viewpoint, own_axis, frame_axis };
-
-QString quoted(const MeshModel& layer) { return "\"" + layer.label() + "\""; }
 
 // The median edge of the first visible layer with faces.
 QVariant default_voxel_size(const MeshDocument& document) {
@@ -56,58 +53,13 @@ VolumeSizeOptions size_options(const ParameterValues& values) {
   return options;
 }
 
-LineOfSight line_of_sight(const MeshModel& layer, Sight sight, const Vector3& viewpoint) {
-  const bool camera = layer.cm.shot.IsValid();
-  if (sight == Sight::camera && !camera)
-    throw CompletionError(
-        reading,
-        ("The layer " + quoted(layer) + " has no camera. Choose another line of sight.").toStdString());
-  if (sight == Sight::camera || (sight == Sight::automatic && camera)) {
-    const Point3m from = layer.cm.shot.GetViewPoint();
-    return LineOfSight::from(point_in_project(layer, Vector3(from[0], from[1], from[2])));
-  }
-  if (sight == Sight::viewpoint) return LineOfSight::from(viewpoint);
-  if (sight == Sight::frame_axis) return LineOfSight::parallel(direction_in_project(layer, Vector3::UnitZ()));
-  return LineOfSight::own_axis();
-}
-
-std::vector<RangeScan> visible_scans(FilterRun& run) {
-  const Sight sight = static_cast<Sight>(run.parameters.choice("LineOfSight"));
-  std::vector<RangeScan> scans;
-  for (const MeshModel* layer : run.document.meshList) {
-    if (!layer->visible || volume_of(*layer) != nullptr || is_slice(*layer)) continue;
-    if (layer->cm.fn == 0)
-      throw CompletionError(reading, ("The layer " + quoted(*layer) +
-                                      " has no faces. Hide it, or triangulate its points first.")
-                                         .toStdString());
-    scans.push_back({layer_surface(*layer).mesh,
-                     line_of_sight(*layer, sight, run.parameters.point("Viewpoint")),
-                     layer->label().toStdString()});
-  }
-  if (scans.empty())
-    throw CompletionError(
-        reading,
-        "There is no visible layer with faces. Open the range scans, or a project with them, first.");
-  return scans;
-}
-
-void log_scan(const FilterRun& run, const ScanFigures& scan) {
-  const DepthStepCounts& faces = scan.faces;
-  const Vector3& v = scan.line_of_sight.vector;
-  const bool parallel = scan.line_of_sight.kind == LineOfSight::Kind::parallel;
-  run.log(QString("%1: %2 faces, %3 dropped (%4 long, %5 grazing, %6 from behind, %7 degenerate); seen %8 "
-                  "(%9 %10 %11)")
-              .arg(QString::fromStdString(scan.name))
-              .arg(faces.kept)
-              .arg(faces.dropped())
-              .arg(faces.long_edge)
-              .arg(faces.grazing)
-              .arg(faces.from_behind)
-              .arg(faces.degenerate)
-              .arg(parallel ? "along" : "from")
-              .arg(v[0], 0, 'g', 4)
-              .arg(v[1], 0, 'g', 4)
-              .arg(v[2], 0, 'g', 4));
+RangeVolume without_surroundings(FilterRun& run, const RangeVolume& volume, const Progress& progress) {
+  StageClock clock(run.report);
+  const SurroundingsResult result = empty_surroundings(volume, progress);
+  clock.end_of("emptying the surroundings");
+  run.log(QString("Surroundings: %1 unseen voxels before the observed surface are empty now")
+              .arg(result.emptied));
+  return result.volume;
 }
 
 void apply_merge(FilterRun& run) {
@@ -119,10 +71,13 @@ void apply_merge(FilterRun& run) {
   options.depth_steps.grazing_angle = values.real("GrazingAngle");
   options.grazing_power = values.real("GrazingPower");
   if (values.real("BoundaryFalloff") > 0) options.boundary_falloff = values.real("BoundaryFalloff");
-  ScanMerge merge = merge_scans(visible_scans(run), options, run.progress);
+  const bool surroundings = values.boolean("Surroundings");
+  ScanMerge merge = merge_scans(visible_scans(run), options,
+                                surroundings ? run.progress.part(0, 0.8, "merging scans") : run.progress);
   for (const ScanFigures& scan : merge.scans) log_scan(run, scan);
-  log_volume(run, merge.volume);
   run.report.stage_seconds = std::move(merge.stage_seconds);
+  if (surroundings) merge.volume = without_surroundings(run, merge.volume, run.progress.part(0.8, 1, ""));
+  log_volume(run, merge.volume);
   add_volume_layer(run.document, merge.volume, "range volume");
 }
 
@@ -173,6 +128,10 @@ FilterDeclaration merge_filter() {
                       "Where the scanner stood, for the line of sight of that name.", Vector3::Zero()),
       switch_parameter("Carving", "Space carving",
                        "What a scanner looked through becomes empty. Without, it stays unseen.", true),
+      switch_parameter("Surroundings", "Empty surroundings",
+                       "Unseen space that lies before the observed surface becomes empty. Without, only what "
+                       "scanners looked through is empty, as published.",
+                       true),
       length_parameter(
           "LongestEdge", "Longest edge",
           "Longer faces of a scan lie across a depth step and are left out. 0: four times its median edge."),

@@ -1,5 +1,6 @@
 #include "filter_volmorph/small_components.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/core/disjoint_sets.h"
@@ -23,6 +24,13 @@ std::vector<Index> component_roots(const TriangleMesh& mesh, const Progress& pro
   return root;
 }
 
+// How many faces each component has, at the vertex that stands for it.
+std::vector<Index> component_sizes(const TriangleMesh& mesh, const std::vector<Index>& root) {
+  std::vector<Index> size(mesh.vertices.size(), 0);
+  for (const Triangle& corners : mesh.triangles) ++size[root[corners[0]]];
+  return size;
+}
+
 void compact(TriangleMesh& mesh) {
   std::vector<Index> number(mesh.vertices.size(), unused);
   for (const Triangle& corners : mesh.triangles)
@@ -43,8 +51,7 @@ void compact(TriangleMesh& mesh) {
 TriangleMesh without_small_components(TriangleMesh mesh, std::size_t faces, const Progress& progress) {
   if (faces < 2) return mesh;
   const std::vector<Index> root = component_roots(mesh, progress.part(0, 0.8, "finding small components"));
-  std::vector<Index> size(mesh.vertices.size(), 0);
-  for (const Triangle& corners : mesh.triangles) ++size[root[corners[0]]];
+  const std::vector<Index> size = component_sizes(mesh, root);
   progress.update(0.9);
   std::size_t kept = 0;
   for (const Triangle& corners : mesh.triangles)
@@ -53,6 +60,12 @@ TriangleMesh without_small_components(TriangleMesh mesh, std::size_t faces, cons
   compact(mesh);
   progress.update(1);
   return mesh;
+}
+
+std::size_t largest_component(const TriangleMesh& mesh, const Progress& progress) {
+  if (mesh.triangles.empty()) return 0;
+  const std::vector<Index> sizes = component_sizes(mesh, component_roots(mesh, progress));
+  return *std::max_element(sizes.begin(), sizes.end());
 }
 
 }  // namespace meshcomplete

@@ -13,4 +13,7 @@ namespace meshcomplete {
 TriangleMesh without_small_components(TriangleMesh mesh, std::size_t faces,
                                       const Progress& progress = Progress());
 
+/// The faces of the component with the most. Cost: O(faces).
+std::size_t largest_component(const TriangleMesh& mesh, const Progress& progress = Progress());
+
 }  // namespace meshcomplete

@@ -14,6 +14,7 @@
 
 #include "common/core/threads.h"
 #include "filter_volmorph/block_bits.h"
+#include "filter_volmorph/filler_distances.h"
 #include "filter_volmorph/volume_box.h"
 #include "filter_volmorph/volume_grids.h"
 
@@ -260,30 +261,6 @@ openvdb::BoolGrid::ConstPtr changed_states(const openvdb::BoolGrid& states,
   return copy;
 }
 
-/// Forgets the distances that a filler has stored at changed voxels. The same grid where there are none.
-openvdb::FloatGrid::ConstPtr reset_distances(const openvdb::FloatGrid::ConstPtr& distances,
-                                             const std::vector<BlockChange>& changes,
-                                             const Progress& progress) {
-  std::vector<BlockChange> stored;
-  const auto reader = distances->getConstAccessor();
-  for (const BlockChange& change : changes) {
-    const BlockBits bits = change.bits & active_bits(reader, change.lowest);
-    if (any_bit(bits)) stored.push_back({change.lowest, bits});
-  }
-  progress.update(0.2);
-  if (stored.empty()) return distances;
-  const openvdb::FloatGrid::Ptr copy = distances->deepCopy();
-  progress.update(0.8);
-  for (const BlockChange& change : stored) {
-    auto* leaf = copy->tree().touchLeaf(change.lowest);
-    for_each_bit(change.bits, [&](int x, int y, int z) {
-      leaf->setValueOff(change.lowest.offsetBy(x, y, z), copy->background());
-    });
-  }
-  openvdb::tools::pruneInactive(copy->tree());
-  return copy;
-}
-
 /// Erosion and dilation.
 OperatorResult change_states(const RangeVolume& volume, const VoxelBox& given, VoxelState from, VoxelState to,
                              const Progress& progress) {
@@ -293,7 +270,7 @@ OperatorResult change_states(const RangeVolume& volume, const VoxelBox& given, V
   if (changes.empty()) return {volume, 0};
   VolumeGrids grids = volume.grids();
   grids.state = changed_states(*grids.state, changes, progress.part(0.7, 0.9, "Changing states"));
-  grids.distance = reset_distances(grids.distance, changes, progress.part(0.9, 1, "Changing states"));
+  reset_filler_distances(volume.grids(), grids, progress.part(0.9, 1, "Changing states"));
   progress.update(1);
   return {RangeVolume(volume.frame(), std::make_shared<const VolumeGrids>(std::move(grids))),
           count_voxels(changes)};

@@ -1,0 +1,75 @@
+#include "filter_volmorph/filter_volumescans.h"
+
+#include "common/core/error.h"
+#include "common/host/meshlab_version.h"
+#include "common/host/other_layers.h"
+#include "filter_volmorph/filter_volumelayers.h"
+
+namespace meshcomplete {
+namespace host {
+namespace {
+
+const char* const reading = "reading the scans";
+
+enum class Sight { automatic, camera, viewpoint, own_axis, frame_axis };
+
+QString quoted(const MeshModel& layer) { return "\"" + layer.label() + "\""; }
+
+LineOfSight line_of_sight(const MeshModel& layer, Sight sight, const Vector3& viewpoint) {
+  const bool camera = layer.cm.shot.IsValid();
+  if (sight == Sight::camera && !camera)
+    throw CompletionError(
+        reading,
+        ("The layer " + quoted(layer) + " has no camera. Choose another line of sight.").toStdString());
+  if (sight == Sight::camera || (sight == Sight::automatic && camera)) {
+    const Point3m from = layer.cm.shot.GetViewPoint();
+    return LineOfSight::from(point_in_project(layer, Vector3(from[0], from[1], from[2])));
+  }
+  if (sight == Sight::viewpoint) return LineOfSight::from(viewpoint);
+  if (sight == Sight::frame_axis) return LineOfSight::parallel(direction_in_project(layer, Vector3::UnitZ()));
+  return LineOfSight::own_axis();
+}
+
+}  // namespace
+
+std::vector<RangeScan> visible_scans(FilterRun& run) {
+  const Sight sight = static_cast<Sight>(run.parameters.choice("LineOfSight"));
+  std::vector<RangeScan> scans;
+  for (const MeshModel* layer : run.document.meshList) {
+    if (!layer->visible || volume_of(*layer) != nullptr || is_slice(*layer)) continue;
+    if (layer->cm.fn == 0)
+      throw CompletionError(reading, ("The layer " + quoted(*layer) +
+                                      " has no faces. Hide it, or triangulate its points first.")
+                                         .toStdString());
+    scans.push_back({layer_surface(*layer).mesh,
+                     line_of_sight(*layer, sight, run.parameters.point("Viewpoint")),
+                     layer->label().toStdString()});
+  }
+  if (scans.empty())
+    throw CompletionError(
+        reading,
+        "There is no visible layer with faces. Open the range scans, or a project with them, first.");
+  return scans;
+}
+
+void log_scan(const FilterRun& run, const ScanFigures& scan) {
+  const DepthStepCounts& faces = scan.faces;
+  const Vector3& v = scan.line_of_sight.vector;
+  const bool parallel = scan.line_of_sight.kind == LineOfSight::Kind::parallel;
+  run.log(QString("%1: %2 faces, %3 dropped (%4 long, %5 grazing, %6 from behind, %7 degenerate); seen %8 "
+                  "(%9 %10 %11)")
+              .arg(QString::fromStdString(scan.name))
+              .arg(faces.kept)
+              .arg(faces.dropped())
+              .arg(faces.long_edge)
+              .arg(faces.grazing)
+              .arg(faces.from_behind)
+              .arg(faces.degenerate)
+              .arg(parallel ? "along" : "from")
+              .arg(v[0], 0, 'g', 4)
+              .arg(v[1], 0, 'g', 4)
+              .arg(v[2], 0, 'g', 4));
+}
+
+}  // namespace host
+}  // namespace meshcomplete
