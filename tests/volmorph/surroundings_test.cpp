@@ -63,7 +63,9 @@ TEST_P(ScannedSphere, has_nothing_unseen_outside_and_all_inside) {
     if (was != VoxelState::unseen) return;
     // Seen from two sides, a belt at the equator is missing; the membrane bends inwards there.
     const double low = GetParam() == 2 ? 0.6 : 1;
-    if (at.norm() > 1 + voxel) ASSERT_EQ(is, VoxelState::empty) << at.transpose();
+    if (at.norm() > 1 + voxel) {
+      ASSERT_EQ(is, VoxelState::empty) << at.transpose();
+    }
     if (at.norm() > low - voxel) return;
     ASSERT_EQ(is, VoxelState::unseen) << at.transpose();
     ++inside;
@@ -116,7 +118,9 @@ TEST(Surroundings, space_between_two_objects_becomes_empty) {
   compare(volume, empty_surroundings(volume), [&](const Vector3& at, VoxelState was, VoxelState is) {
     if (was != VoxelState::unseen) return;
     const double depth[] = {0.6 - (at - a).norm(), 0.5 - (at - b).norm()};
-    if (std::max(depth[0], depth[1]) < -2 * voxel) ASSERT_EQ(is, VoxelState::empty) << at.transpose();
+    if (std::max(depth[0], depth[1]) < -2 * voxel) {
+      ASSERT_EQ(is, VoxelState::empty) << at.transpose();
+    }
     for (const int k : {0, 1}) {
       if (depth[k] < 2 * voxel) continue;
       ASSERT_EQ(is, VoxelState::unseen) << at.transpose();
