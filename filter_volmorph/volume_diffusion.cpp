@@ -36,9 +36,10 @@ class Diffusion {
         plain_weights_(weights_by_distance()) {}
 
   void step(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block, Filled& filled) const {
+    filled = {block.distance, block.known};
+    if (!reached(blocks, block)) return;
     Sums sums;
     add_neighbours(blocks, block, sums);
-    filled = {block.distance, block.known};
     for (int number = 0; number < block_voxels; ++number) {
       if (!block.within[number] || !(sums.weight[number] > 0)) continue;
       filled.known[number] = true;
@@ -50,6 +51,13 @@ class Diffusion {
   struct Sums {
     std::array<float, block_voxels> weight{}, distance{};
   };
+
+  // Whether anything is known in the block or beside it.
+  static bool reached(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block) {
+    return std::any_of(block.neighbours.begin(), block.neighbours.end(), [&](std::int32_t number) {
+      return number >= 0 && blocks[static_cast<std::size_t>(number)].known.any();
+    });
+  }
 
   float composed(float blurred, bool empty) const {
     if (!empty || !line_of_sight_) return blurred;
