@@ -20,20 +20,25 @@ namespace meshcomplete {
 namespace host {
 namespace {
 
-// The median edge of the first visible layer with faces.
-QVariant default_voxel_size(const MeshDocument& document) {
+QVariant edge_of_first_scan(const MeshDocument& document) {
   for (const MeshModel* layer : document.meshList)
     if (layer->visible && layer->cm.fn > 0 && !is_slice(*layer))
       return median_edge(layer_surface(*layer).mesh);
   return QVariant();
 }
 
-std::vector<ParameterDeclaration> size_parameters() {
+QVariant edge_of_current_layer(const MeshDocument& document) {
+  const MeshModel* layer = document.mm();
+  return layer != nullptr && layer->cm.fn > 0 ? median_edge(layer_surface(*layer).mesh) : QVariant();
+}
+
+std::vector<ParameterDeclaration> size_parameters(QVariant (*default_size)(const MeshDocument&),
+                                                  const char* default_in_words) {
   ParameterDeclaration size = length_parameter("VoxelSize", "Voxel size",
                                                "The side of a voxel. Half of it takes four times the memory. "
                                                "A percentage is of the bounding box's diagonal.");
-  size.document_default = default_voxel_size;
-  size.default_in_words = "the median edge of the first visible layer";
+  size.document_default = default_size;
+  size.default_in_words = default_in_words;
   size.above_minimum = true;
   return {size,
           length_parameter("Ramp", "Ramp",
@@ -115,7 +120,7 @@ FilterDeclaration merge_filter() {
       "Master's thesis, California Polytechnic State University, 2008.";
   filter.place = MenuPlace::range_map;
   filter.arity = Arity::visible_meshes;
-  filter.parameters = size_parameters();
+  filter.parameters = size_parameters(edge_of_first_scan, "the median edge of the first visible layer");
   const std::vector<ParameterDeclaration> more = {
       choice_parameter(
           "LineOfSight", "Line of sight",
@@ -157,7 +162,7 @@ FilterDeclaration voxelize_filter() {
       "voxels near it are seen, the rest is unseen inside and empty outside. Holes stay open there until a "
       "filler fills them.";
   filter.place = MenuPlace::range_map;
-  filter.parameters = size_parameters();
+  filter.parameters = size_parameters(edge_of_current_layer, "the median edge of the current layer");
   filter.apply = apply_voxelize;
   return filter;
 }

@@ -10,11 +10,19 @@ namespace meshcomplete {
 namespace host {
 namespace {
 
-QVariant default_value(const ParameterDeclaration& parameter, const MeshDocument& document) {
-  if (parameter.document_default) {
-    const QVariant value = parameter.document_default(document);
-    if (value.isValid()) return value;
+/// What is wrong with a document is said when the filter runs, and not while MeshLab opens its dialog.
+QVariant default_for(const ParameterDeclaration& parameter, const MeshDocument& document) {
+  if (!parameter.document_default) return QVariant();
+  try {
+    return parameter.document_default(document);
+  } catch (const CompletionError&) {
+    return QVariant();
   }
+}
+
+QVariant default_value(const ParameterDeclaration& parameter, const MeshDocument& document) {
+  const QVariant value = default_for(parameter, document);
+  if (value.isValid()) return value;
   if (parameter.type == ParameterType::layer) return 0;
   return parameter.fallback;
 }

@@ -135,6 +135,22 @@ TEST_F(FilterPluginTest, ParametersArriveAndDefaultsDependOnTheMesh) {
   EXPECT_EQ(runs, 3);
 }
 
+TEST_F(FilterPluginTest, ADefaultThatTheDocumentDoesNotAllowIsTheFallback) {
+  int runs = 0;
+  FilterDeclaration filter = filter_with_parameters([&](FilterRun& run) {
+    EXPECT_EQ(run.parameters.integer("Count"), 4);
+    ++runs;
+  });
+  for (ParameterDeclaration& parameter : filter.parameters)
+    if (parameter.name == "Count")
+      parameter.document_default = [](const MeshDocument&) -> QVariant {
+        throw CompletionError("reading the mesh", "It is broken.");
+      };
+  FakePlugin plugin({filter});
+  EXPECT_TRUE(plugin.run(document));
+  EXPECT_EQ(runs, 1);
+}
+
 TEST_F(FilterPluginTest, ValuesOutOfRangeOrOfAnotherKindAreRefused) {
   FakePlugin plugin({filter_with_parameters([](FilterRun&) { FAIL() << "must not run"; })});
   const auto refused = [&](const std::function<void(RichParameterList&)>& change, const char* message) {
