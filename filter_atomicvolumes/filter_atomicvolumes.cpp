@@ -6,6 +6,7 @@
 #include "common/core/error.h"
 #include "common/host/close_holes.h"
 #include "common/host/other_layers.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_atomicvolumes/atomic_volumes.h"
 #include "filter_atomicvolumes/offending_faces.h"
 

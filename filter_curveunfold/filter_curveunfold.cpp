@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/host/close_holes.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_curveunfold/curve_unfolding.h"
 
 using namespace meshcomplete;

@@ -6,6 +6,7 @@
 #include "common/core/reduced_mesh.h"
 #include "common/host/close_holes.h"
 #include "common/host/other_layers.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_poissoncompletion/filter_poissonparameters.h"
 #include "filter_poissoncompletion/filter_poissonremeshing.h"
 #include "filter_poissoncompletion/poisson_completion.h"

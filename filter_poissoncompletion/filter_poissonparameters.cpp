@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/host/parameter_blocks.h"
+
 namespace meshcomplete {
 namespace host {
 

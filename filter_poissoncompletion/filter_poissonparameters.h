@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/core/poisson_oracle.h"
-#include "common/host/close_holes_parameters.h"
 #include "common/host/filter_declaration.h"
 #include "common/host/other_layers.h"
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/host/append.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_poissoncompletion/filter_poissonparameters.h"
 #include "filter_poissoncompletion/poisson_remeshing.h"
 
@@ -34,7 +35,8 @@ void apply_remeshing(FilterRun& run) {
     for (auto& [name, other] : visible_layer_surfaces(run)) add_surface(std::move(other), surface);
   PoissonRemeshingResult result = remesh_by_poisson(surface, options, run.progress);
   run.report.stage_seconds = std::move(result.stage_seconds);
-  run.document.setCurrentMesh(add_layer(run.document, result.mesh, current.label() + " reconstructed").id());
+  run.document.setCurrentMesh(
+      add_layer(run.document, result.mesh, current.label() + " reconstructed", current).id());
   run.log("Reconstructed with " + QString::number(result.mesh.vertices.size()) + " vertices and " +
           QString::number(result.mesh.triangles.size()) + " faces, from " +
           QString::number(result.oracle.samples) + " samples in an octree of depth " +

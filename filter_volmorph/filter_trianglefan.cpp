@@ -4,6 +4,7 @@
 
 #include "common/core/error.h"
 #include "common/host/close_holes.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_volmorph/published_fans.h"
 #include "filter_volmorph/triangle_fan.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "common/core/error.h"
-#include "common/host/close_holes_parameters.h"
-#include "common/host/meshlab_version.h"
+#include "common/host/layers.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_volmorph/filter_volumelayers.h"
 #include "filter_volmorph/volume_box.h"
 
@@ -17,8 +17,6 @@ namespace {
 const char* const stage = "choosing the box";
 
 enum class Where { everywhere, voxels, space, selection };
-
-std::string quoted(const MeshModel& layer) { return "\"" + layer.label().toStdString() + "\""; }
 
 VoxelIndex as_voxel(const Vector3& numbers, const char* name) {
   for (double x : numbers)

@@ -3,8 +3,8 @@
 #include <functional>
 #include <utility>
 
-#include "common/host/close_holes_parameters.h"
 #include "common/host/meshlab_version.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_volmorph/filter_volumebox.h"
 #include "filter_volmorph/filter_volumelayers.h"
 #include "filter_volmorph/filter_volumelog.h"
@@ -64,7 +64,11 @@ void change_volume(
   const auto log_surface = [&](const RangeVolume& volume, const char* when, double from, double to) {
     const TriangleMesh surface = extract_surface(
         volume, {}, run.progress.part(from, from + 0.4 * (to - from), "extracting the surface"));
-    log_topology(run, surface, when,
+    log_origins(run,
+                surface_origins(volume, surface,
+                                run.progress.part(from + 0.4 * (to - from), to, "measuring the surface")),
+                when);
+    log_topology(run, volume, surface, when,
                  run.progress.part(from + 0.4 * (to - from), to, "measuring the surface"));
   };
   if (measure) log_surface(before, "Before", 0, 0.25);
@@ -73,7 +77,7 @@ void change_volume(
   if (measure) log_surface(after, "After", 0.75, 1);
   log_volume(run, after);
   if (run.parameters.boolean("AsNewLayer"))
-    add_volume_layer(run.document, after, layer.label() + " " + name);
+    add_volume_layer(run.document, after, layer.label() + " " + name, layer.cm.Tr);
   else
     replace_volume(layer, after);
 }

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "common/core/error.h"
-#include "common/host/meshlab_version.h"
+#include "common/host/append.h"
+#include "common/host/layers.h"
 #include "filter_volmorph/surface_voxels.h"
 
 namespace meshcomplete {
@@ -19,6 +20,12 @@ const char* const stage = "finding the volume";
 // Per-mesh attributes: MeshLab keeps them with the layer, and frees them with it.
 const char* const volume_name = "RangeVolume";
 const char* const slice_name = "RangeVolumeSlice";
+const char* const surface_name = "RangeVolumeSurface";
+
+// The layer whose volume a surface was extracted from, by its number in the project.
+struct SurfaceOfVolume {
+  int layer;
+};
 
 template <class Value>
 const Value* attribute(const MeshModel& layer, const char* name) {
@@ -28,23 +35,20 @@ const Value* attribute(const MeshModel& layer, const char* name) {
   return Allocator::IsValidHandle(mesh, handle) ? handle().get() : nullptr;
 }
 
+// An attribute that holds nothing when it is new.
 template <class Value>
-void set_attribute(MeshModel& layer, const char* name, Value value) {
-  auto handle = Allocator::GetPerMeshAttribute<std::shared_ptr<const Value>>(layer.cm, name);
-  handle() = std::make_shared<const Value>(std::move(value));
-}
-
-Point3m as_point(const Vector3& v) {
-  return Point3m(static_cast<Scalarm>(v.x()), static_cast<Scalarm>(v.y()), static_cast<Scalarm>(v.z()));
+std::shared_ptr<const Value>& attribute_to_set(MeshModel& layer, const char* name) {
+  return Allocator::GetPerMeshAttribute<std::shared_ptr<const Value>>(layer.cm, name)();
 }
 
 void show_points(MeshModel& layer, const RangeVolume& volume) {
   const std::vector<SurfaceVoxel> voxels = surface_voxels(volume);
   CMeshO& mesh = layer.cm;
+  layer.updateDataMask(MeshModel::MM_VERTQUALITY);
+  mesh.vert.reserve(voxels.size());  // where memory may run out, before anything is lost
   mesh.face.clear();
   mesh.vert.clear();
   mesh.fn = mesh.vn = mesh.sfn = mesh.svn = 0;
-  layer.updateDataMask(MeshModel::MM_VERTQUALITY);
   auto vertex = Allocator::AddVertices(mesh, voxels.size());
   for (const SurfaceVoxel& voxel : voxels) {
     vertex->P() = as_point(voxel.position);
@@ -55,8 +59,6 @@ void show_points(MeshModel& layer, const RangeVolume& volume) {
   vcg::tri::UpdateBounding<CMeshO>::Box(mesh);
 }
 
-std::string quoted(const MeshModel& layer) { return "\"" + layer.label().toStdString() + "\""; }
-
 MeshModel* layer_with_number(MeshDocument& document, int number) {
   for (MeshModel* layer : document.meshList)
     if (layer->id() == number) return layer;
@@ -64,6 +66,19 @@ MeshModel* layer_with_number(MeshDocument& document, int number) {
 }
 
 vcg::Color4b colour(const std::uint8_t* pixel) { return vcg::Color4b(pixel[0], pixel[1], pixel[2], 255); }
+
+void add_corners(CMeshO& mesh, const VolumeSlice& slice, const VolumeFrame& frame) {
+  const auto [across, along] = slice_axes(slice.axis);
+  auto vertex = Allocator::AddVertices(mesh, static_cast<std::size_t>(slice.width + 1) * (slice.height + 1));
+  const Vector3 first = voxel_of_pixel(frame, slice.axis, slice.position, 0, 0).cast<double>();
+  for (int row = 0; row <= slice.height; ++row)
+    for (int column = 0; column <= slice.width; ++column) {
+      Vector3 corner = first;
+      corner[across] += column - 0.5;
+      corner[along] += 0.5 - row;
+      (vertex++)->P() = as_point(frame.position(corner));
+    }
+}
 
 // Two triangles for each pixel, with the edge between them hidden.
 void add_squares(CMeshO& mesh, const VolumeSlice& slice) {
@@ -85,21 +100,21 @@ void add_squares(CMeshO& mesh, const VolumeSlice& slice) {
 
 }  // namespace
 
-MeshModel& add_volume_layer(MeshDocument& document, const RangeVolume& volume, const QString& name) {
-  MeshModel* layer = document.addNewMesh("", name, false);
-  try {
-    replace_volume(*layer, volume);
-  } catch (...) {
-    document.delMesh(layer);
-    throw;
-  }
-  document.setCurrentMesh(layer->id());
-  return *layer;
+MeshModel& add_volume_layer(MeshDocument& document, const RangeVolume& volume, const QString& name,
+                            const Matrix44m& placed) {
+  MeshModel& made = add_layer_with(document, name, [&](MeshModel& layer) {
+    layer.cm.Tr = placed;
+    replace_volume(layer, volume);
+  });
+  document.setCurrentMesh(made.id());
+  return made;
 }
 
 void replace_volume(MeshModel& layer, const RangeVolume& volume) {
+  auto holder = std::make_shared<const RangeVolume>(volume);
+  auto& attribute = attribute_to_set<RangeVolume>(layer, volume_name);
   show_points(layer, volume);
-  set_attribute(layer, volume_name, volume);
+  attribute = std::move(holder);
 }
 
 const RangeVolume* volume_of(const MeshModel& layer) { return attribute<RangeVolume>(layer, volume_name); }
@@ -119,28 +134,41 @@ MeshModel& volume_layer(FilterRun& run) {
                                    "holds one.");
 }
 
+MeshModel& add_surface_layer(MeshDocument& document, const MeshModel& volume, const TriangleMesh& surface,
+                             const SurfaceOrigins& origins, bool select) {
+  const Matrix44m placed = volume.cm.Tr;
+  const SurfaceOfVolume of{volume.id()};
+  MeshModel& made = add_layer_with(document, volume.label() + " surface", [&](MeshModel& layer) {
+    layer.cm.Tr = placed;
+    fill_layer(layer, surface);
+    layer.updateDataMask(MeshModel::MM_VERTQUALITY);
+    for (std::size_t v = 0; v < origins.weights.size(); ++v) layer.cm.vert[v].Q() = origins.weights[v];
+    for (std::size_t f = 0; select && f < origins.faces.size(); ++f)
+      if (origins.faces[f] != SurfaceOrigin::observed) layer.cm.face[f].SetS();
+    attribute_to_set<SurfaceOfVolume>(layer, surface_name) = std::make_shared<const SurfaceOfVolume>(of);
+  });
+  document.setCurrentMesh(made.id());
+  return made;
+}
+
+bool is_extracted(const MeshModel& layer) {
+  return attribute<SurfaceOfVolume>(layer, surface_name) != nullptr;
+}
+
 MeshModel& add_slice_layer(MeshDocument& document, const MeshModel& volume, const VolumeSlice& slice,
                            const QString& name) {
-  const VolumeFrame frame = volume_of(volume)->frame();
-  const auto [across, along] = slice_axes(slice.axis);
-  const int number = volume.id();
-  MeshModel* layer = document.addNewMesh("", name, false);
-  layer->updateDataMask(MeshModel::MM_FACECOLOR);
-  auto vertex =
-      Allocator::AddVertices(layer->cm, static_cast<std::size_t>(slice.width + 1) * (slice.height + 1));
-  const Vector3 first = voxel_of_pixel(frame, slice.axis, slice.position, 0, 0).cast<double>();
-  for (int row = 0; row <= slice.height; ++row)
-    for (int column = 0; column <= slice.width; ++column) {
-      Vector3 corner = first;
-      corner[across] += column - 0.5;
-      corner[along] += 0.5 - row;
-      (vertex++)->P() = as_point(frame.position(corner));
-    }
-  add_squares(layer->cm, slice);
-  layer->UpdateBoxAndNormals();
-  set_attribute(*layer, slice_name, SliceOrigin{number, frame, slice.axis});
-  document.setCurrentMesh(layer->id());
-  return *layer;
+  const SliceOrigin origin{volume.id(), volume_of(volume)->frame(), slice.axis};
+  const Matrix44m placed = volume.cm.Tr;
+  MeshModel& made = add_layer_with(document, name, [&](MeshModel& layer) {
+    layer.cm.Tr = placed;
+    layer.updateDataMask(MeshModel::MM_FACECOLOR);
+    add_corners(layer.cm, slice, origin.frame);
+    add_squares(layer.cm, slice);
+    layer.UpdateBoxAndNormals();
+    attribute_to_set<SliceOrigin>(layer, slice_name) = std::make_shared<const SliceOrigin>(origin);
+  });
+  document.setCurrentMesh(made.id());
+  return made;
 }
 
 }  // namespace host

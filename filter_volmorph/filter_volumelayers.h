@@ -4,17 +4,21 @@
 #include <QString>
 
 #include "common/host/filter_declaration.h"
+#include "common/host/meshlab_version.h"
 #include "filter_volmorph/range_volume.h"
+#include "filter_volmorph/surface_origin.h"
 #include "filter_volmorph/volume_slice.h"
 
 namespace meshcomplete {
 namespace host {
 
-/// A new current layer that holds the volume. What it shows are the voxels at the observed surface, as points
-/// with normals, and with weights as quality.
-MeshModel& add_volume_layer(MeshDocument& document, const RangeVolume& volume, const QString& name);
+/// A new current layer that holds the volume, with `placed` as its transformation matrix. What it shows are
+/// the voxels at the observed surface, as points with normals, and with weights as quality.
+MeshModel& add_volume_layer(MeshDocument& document, const RangeVolume& volume, const QString& name,
+                            const Matrix44m& placed = Matrix44m::Identity());
 
-/// Gives a layer another volume, and shows that. The layer is the one of `volume_layer`.
+/// Gives a layer another volume, and shows that. The layer is the one of `volume_layer`. When it throws, the
+/// layer is as before.
 void replace_volume(MeshModel& layer, const RangeVolume& volume);
 
 /// Null where the layer holds none.
@@ -24,7 +28,16 @@ const RangeVolume* volume_of(const MeshModel& layer);
 /// CompletionError, which says how to get one, when there is none.
 MeshModel& volume_layer(FilterRun& run);
 
-/// A new current layer: one square for each pixel of the slice, in its colour, where the voxels are.
+/// A new current layer with a surface that was extracted from the volume of the layer `volume`: with weights
+/// as quality, and the faces that were not observed selected with `select`.
+MeshModel& add_surface_layer(MeshDocument& document, const MeshModel& volume, const TriangleMesh& surface,
+                             const SurfaceOrigins& origins, bool select);
+
+/// Whether the layer is one of `add_surface_layer`.
+bool is_extracted(const MeshModel& layer);
+
+/// A new current layer: one square for each pixel of the slice, in its colour, where the voxels of `volume`,
+/// which holds one, are.
 MeshModel& add_slice_layer(MeshDocument& document, const MeshModel& volume, const VolumeSlice& slice,
                            const QString& name);
 

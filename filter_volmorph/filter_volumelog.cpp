@@ -16,12 +16,17 @@ void add_figure(FilterRun& run, const QString& name, double value) {
   run.report.figures.emplace_back(name.toStdString(), value);
 }
 
-QString handle_list(const std::vector<Handle>& handles) {
+QString handle_list(const std::vector<Handle>& handles, const VolumeFrame& frame) {
   QStringList words;
-  for (std::size_t i = 0; i < handles.size() && i < most_handles; ++i)
-    words << QString("%1 (at %2 %3 %4)")
-                 .arg(number(handles[i].length), number(handles[i].centre[0]), number(handles[i].centre[1]),
-                      number(handles[i].centre[2]));
+  for (std::size_t i = 0; i < handles.size() && i < most_handles; ++i) {
+    const Vector3& at = handles[i].centre;
+    const VoxelIndex voxel = frame.voxel(at).array().round().matrix().cast<int>();
+    words << QString("%1 (at %2 %3 %4, voxel %5 %6 %7)")
+                 .arg(number(handles[i].length), number(at.x()), number(at.y()), number(at.z()))
+                 .arg(voxel.x())
+                 .arg(voxel.y())
+                 .arg(voxel.z());
+  }
   if (handles.size() > most_handles)
     words << QString("and %1 more, up to %2")
                  .arg(handles.size() - most_handles)
@@ -29,23 +34,12 @@ QString handle_list(const std::vector<Handle>& handles) {
   return words.join(", ");
 }
 
-ParameterDeclaration parameter(ParameterType type, const char* name, const char* label, const char* meaning,
-                               const QVariant& fallback) {
-  ParameterDeclaration result;
-  result.type = type;
-  result.name = name;
-  result.label = label;
-  result.meaning = meaning;
-  result.fallback = fallback;
-  return result;
-}
-
 }  // namespace
 
 void log_volume(FilterRun& run, const RangeVolume& volume) {
   const VolumeCounts counts = volume.counts();
   const VoxelIndex size = volume.frame().box.size();
-  run.log(QString("Volume of %1 x %2 x %3 voxels of %4: %5 seen, %6 unseen, %7 empty; %8 MB")
+  run.log(QString("Volume of %1 x %2 x %3 voxels of %4: %5 seen, %6 unseen, %7 empty, %8 of these filled; %9 MB")
               .arg(size.x())
               .arg(size.y())
               .arg(size.z())
@@ -53,14 +47,16 @@ void log_volume(FilterRun& run, const RangeVolume& volume) {
               .arg(counts.seen)
               .arg(counts.unseen)
               .arg(counts.empty)
+              .arg(counts.filled)
               .arg(number(1e-6 * static_cast<double>(volume.memory()))));
   add_figure(run, "seen voxels", static_cast<double>(counts.seen));
   add_figure(run, "unseen voxels", static_cast<double>(counts.unseen));
   add_figure(run, "empty voxels", static_cast<double>(counts.empty));
+  add_figure(run, "filled voxels", static_cast<double>(counts.filled));
   add_figure(run, "volume bytes", static_cast<double>(volume.memory()));
 }
 
-void log_topology(FilterRun& run, const TriangleMesh& surface, const QString& when,
+void log_topology(FilterRun& run, const RangeVolume& volume, const TriangleMesh& surface, const QString& when,
                   const Progress& progress) {
   const HandleReport report = measure_handles(surface, progress);
   const MeshStatistics& is = report.statistics;
@@ -73,7 +69,8 @@ void log_topology(FilterRun& run, const TriangleMesh& surface, const QString& wh
               .arg(is.components)
               .arg(is.boundary_loops.size()));
   if (report.handles && !report.handles->empty())
-    run.log(QString("%1: loops round the handles: %2").arg(when, handle_list(*report.handles)));
+    run.log(
+        QString("%1: loops round the handles: %2").arg(when, handle_list(*report.handles, volume.frame())));
   const QString name = when.toLower();
   add_figure(run, name + " vertices", static_cast<double>(is.vertices));
   add_figure(run, name + " faces", static_cast<double>(is.faces));
@@ -82,31 +79,19 @@ void log_topology(FilterRun& run, const TriangleMesh& surface, const QString& wh
   add_figure(run, name + " boundary loops", static_cast<double>(is.boundary_loops.size()));
 }
 
-ParameterDeclaration angle_parameter(const char* name, const char* label, const char* meaning,
-                                     double fallback) {
-  ParameterDeclaration result = parameter(ParameterType::real, name, label, meaning, fallback);
-  result.unit = "degrees";
-  result.minimum = 0;
-  result.above_minimum = true;
-  result.maximum = 90;
-  return result;
-}
-
-ParameterDeclaration at_least_zero_parameter(const char* name, const char* label, const char* meaning,
-                                             double fallback) {
-  ParameterDeclaration result = parameter(ParameterType::real, name, label, meaning, fallback);
-  result.minimum = 0;
-  return result;
-}
-
-ParameterDeclaration text_parameter(const char* name, const char* label, const char* meaning,
-                                    const char* fallback) {
-  return parameter(ParameterType::text, name, label, meaning, QString(fallback));
-}
-
-ParameterDeclaration file_parameter(const char* name, const char* label, const char* meaning,
-                                    ParameterType type) {
-  return parameter(type, name, label, meaning, QString());
+void log_origins(FilterRun& run, const SurfaceOrigins& origins, const QString& when) {
+  const std::size_t observed = origins.count(SurfaceOrigin::observed);
+  const std::size_t filled = origins.count(SurfaceOrigin::filled);
+  const std::size_t boundary = origins.count(SurfaceOrigin::boundary);
+  run.log(QString("%1: %2 faces observed, %3 filled, %4 between unseen and empty")
+              .arg(when)
+              .arg(observed)
+              .arg(filled)
+              .arg(boundary));
+  const QString name = when.toLower();
+  add_figure(run, name + " observed faces", static_cast<double>(observed));
+  add_figure(run, name + " filled faces", static_cast<double>(filled));
+  add_figure(run, name + " boundary faces", static_cast<double>(boundary));
 }
 
 }  // namespace host

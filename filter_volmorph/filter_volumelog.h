@@ -2,10 +2,10 @@
 #pragma once
 
 #include <QString>
-#include <vector>
 
 #include "common/host/filter_declaration.h"
 #include "filter_volmorph/range_volume.h"
+#include "filter_volmorph/surface_origin.h"
 
 namespace meshcomplete {
 namespace host {
@@ -13,19 +13,14 @@ namespace host {
 /// Size, voxels of each state, memory; also as figures of the report.
 void log_volume(FilterRun& run, const RangeVolume& volume);
 
-/// Genus, components, boundary loops and the lengths of the handles of a mesh, behind `when` ("before",
-/// "after"); also as figures of the report.
-void log_topology(FilterRun& run, const TriangleMesh& surface, const QString& when, const Progress& progress);
+/// Genus, components, boundary loops and the handles of a surface that was extracted from the volume, with
+/// their lengths, places and voxels, behind `when` ("Before", "After"); also as figures of the report.
+void log_topology(FilterRun& run, const RangeVolume& volume, const TriangleMesh& surface, const QString& when,
+                  const Progress& progress);
 
-/// Building blocks for parameters.
-ParameterDeclaration angle_parameter(const char* name, const char* label, const char* meaning,
-                                     double fallback);
-ParameterDeclaration at_least_zero_parameter(const char* name, const char* label, const char* meaning,
-                                             double fallback);
-ParameterDeclaration text_parameter(const char* name, const char* label, const char* meaning,
-                                    const char* fallback);
-ParameterDeclaration file_parameter(const char* name, const char* label, const char* meaning,
-                                    ParameterType type);
+/// How many faces were observed, how many filled, and how many are nothing but the boundary between unseen
+/// and empty voxels; also as figures of the report.
+void log_origins(FilterRun& run, const SurfaceOrigins& origins, const QString& when);
 
 }  // namespace host
 }  // namespace meshcomplete

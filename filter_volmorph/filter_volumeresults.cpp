@@ -5,9 +5,8 @@
 #include <algorithm>
 
 #include "common/core/error.h"
-#include "common/host/append.h"
-#include "common/host/close_holes_parameters.h"
 #include "common/host/meshlab_version.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_volmorph/filter_volumelayers.h"
 #include "filter_volmorph/filter_volumelog.h"
 #include "filter_volmorph/surface_extraction.h"
@@ -20,17 +19,22 @@ namespace {
 
 void apply_extract(FilterRun& run) {
   const MeshModel& layer = volume_layer(run);
+  const RangeVolume& volume = *volume_of(layer);
   ExtractionOptions options;
   options.observed_only = run.parameters.boolean("ObservedOnly");
   options.smallest_component = static_cast<std::size_t>(run.parameters.integer("SmallestComponent"));
   const TriangleMesh surface =
-      extract_surface(*volume_of(layer), options, run.progress.part(0, 0.5, "extracting the surface"));
+      extract_surface(volume, options, run.progress.part(0, 0.5, "extracting the surface"));
   if (surface.triangles.empty())
     throw CompletionError("extracting the surface",
                           "There is no surface in this volume: nothing of it is inside, or all components "
                           "are smaller than asked for.");
-  log_topology(run, surface, "Surface", run.progress.part(0.5, 1, "measuring the surface"));
-  run.document.setCurrentMesh(add_layer(run.document, surface, layer.label() + " surface").id());
+  const SurfaceOrigins origins =
+      surface_origins(volume, surface, run.progress.part(0.5, 0.55, "measuring the surface"));
+  log_origins(run, origins, "Surface");
+  if (run.parameters.boolean("Measure"))
+    log_topology(run, volume, surface, "Surface", run.progress.part(0.55, 1, "measuring the surface"));
+  add_surface_layer(run.document, layer, surface, origins, run.parameters.boolean("FilledSelected"));
 }
 
 QString axis_name(int axis) { return QString("xyz").mid(axis, 1); }
@@ -106,7 +110,7 @@ FilterDeclaration extract_filter() {
       "Makes a mesh of the surface in the current layer's volume, in a new layer, by marching cubes: "
       "manifold always, without degenerate faces or "
       "intersections, and closed, since what no scanner saw is bounded by what they looked through (VRIP's "
-      "filler)."
+      "filler). Its quality is the weight with which the scanners saw it, and 0 where a filler made it."
       "<br>See: <br/><i>Brian Curless, Marc Levoy</i><br/><b>\"A volumetric method for building complex "
       "models from range images\"</b><br/>SIGGRAPH 1996.";
   filter.place = MenuPlace::range_map;
@@ -115,7 +119,14 @@ FilterDeclaration extract_filter() {
           "ObservedOnly", "Observed surface only",
           "Holes stay open where nothing was observed, for a filter that closes holes of meshes.", false),
       integer_parameter("SmallestComponent", "Smallest component",
-                        "Components with fewer faces are left out. 0 keeps all.", "faces", 0, 0, 2000000000)};
+                        "Components with fewer faces are left out. 0 keeps all.", "faces", 0, 0, 2000000000),
+      switch_parameter("FilledSelected", "Select what was not observed",
+                       "The faces that a filler made become the face selection, for example to smooth or "
+                       "colour them afterwards.",
+                       true),
+      switch_parameter("Measure", "Measure",
+                       "Logs genus, components, boundary loops, and the lengths and places of handles.",
+                       true)};
   filter.apply = apply_extract;
   return filter;
 }
@@ -128,7 +139,7 @@ FilterDeclaration slice_filter() {
       "Shows a slice through the current layer's volume in a new layer, or writes images of all slices to a "
       "folder. States: empty "
       "black, unseen brown, seen white. Faces that are selected in a slice choose the box of \"Range Volume: "
-      "Morphology\"."
+      "Morphology\" and \"Range Volume: Fill\"."
       "<br>See: <br/><i>Eric Firestone</i><br/><b>\"An Exploration of Hole Filling Algorithms\"</b><br/>"
       "Master's thesis, California Polytechnic State University, San Luis Obispo, 2008, section 3.2.";
   filter.place = MenuPlace::range_map;

@@ -1,7 +1,7 @@
 #include "filter_volmorph/filter_volumescans.h"
 
 #include "common/core/error.h"
-#include "common/host/meshlab_version.h"
+#include "common/host/layers.h"
 #include "common/host/other_layers.h"
 #include "filter_volmorph/filter_volumelayers.h"
 
@@ -13,17 +13,13 @@ const char* const reading = "reading the scans";
 
 enum class Sight { automatic, camera, viewpoint, own_axis, frame_axis };
 
-QString quoted(const MeshModel& layer) { return "\"" + layer.label() + "\""; }
-
 LineOfSight line_of_sight(const MeshModel& layer, Sight sight, const Vector3& viewpoint) {
   const bool camera = layer.cm.shot.IsValid();
   if (sight == Sight::camera && !camera)
-    throw CompletionError(
-        reading,
-        ("The layer " + quoted(layer) + " has no camera. Choose another line of sight.").toStdString());
+    throw CompletionError(reading,
+                          "The layer " + quoted(layer) + " has no camera. Choose another line of sight.");
   if (sight == Sight::camera || (sight == Sight::automatic && camera)) {
-    const Point3m from = layer.cm.shot.GetViewPoint();
-    return LineOfSight::from(point_in_project(layer, Vector3(from[0], from[1], from[2])));
+    return LineOfSight::from(point_in_project(layer, as_vector(layer.cm.shot.GetViewPoint())));
   }
   if (sight == Sight::viewpoint) return LineOfSight::from(viewpoint);
   if (sight == Sight::frame_axis) return LineOfSight::parallel(direction_in_project(layer, Vector3::UnitZ()));
@@ -37,10 +33,13 @@ std::vector<RangeScan> visible_scans(FilterRun& run) {
   std::vector<RangeScan> scans;
   for (const MeshModel* layer : run.document.meshList) {
     if (!layer->visible || volume_of(*layer) != nullptr || is_slice(*layer)) continue;
+    if (is_extracted(*layer)) {
+      run.log("Left out: " + layer->label() + ", a surface that was extracted from a volume and is no scan");
+      continue;
+    }
     if (layer->cm.fn == 0)
-      throw CompletionError(reading, ("The layer " + quoted(*layer) +
-                                      " has no faces. Hide it, or triangulate its points first.")
-                                         .toStdString());
+      throw CompletionError(reading, "The layer " + quoted(*layer) +
+                                         " has no faces. Hide it, or triangulate its points first.");
     scans.push_back({layer_surface(*layer).mesh,
                      line_of_sight(*layer, sight, run.parameters.point("Viewpoint")),
                      layer->label().toStdString()});

@@ -5,9 +5,9 @@
 
 #include "common/core/error.h"
 #include "common/core/stage_clock.h"
-#include "common/host/close_holes_parameters.h"
 #include "common/host/meshlab_version.h"
 #include "common/host/other_layers.h"
+#include "common/host/parameter_blocks.h"
 #include "filter_volmorph/filter_volumelayers.h"
 #include "filter_volmorph/filter_volumelog.h"
 #include "filter_volmorph/filter_volumescans.h"

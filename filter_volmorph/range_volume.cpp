@@ -35,6 +35,7 @@ VolumeCounts RangeVolume::counts() const {
     if (!value.getValue()) counts.unseen += value.getVoxelCount();
   const std::uint64_t all = std::uint64_t(size.x()) * std::uint64_t(size.y()) * std::uint64_t(size.z());
   counts.empty = all - counts.seen - counts.unseen;
+  counts.filled = grids_->distance->activeVoxelCount() - counts.seen;
   return counts;
 }
 

@@ -58,6 +58,7 @@ struct Voxel {
 
 struct VolumeCounts {
   std::uint64_t seen = 0, unseen = 0, empty = 0;  ///< together the voxels of the box
+  std::uint64_t filled = 0;                       ///< unseen and empty ones with a distance from a filler
 };
 
 /// The sparse grids of a volume (volume_grids.h; OpenVDB).

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "common/host/layers.h"
 #include "common/host/patch_attributes.h"
 
 namespace meshcomplete {
@@ -11,10 +12,6 @@ namespace host {
 namespace {
 
 using Allocator = vcg::tri::Allocator<CMeshO>;
-
-Point3m as_point(const Vector3& v) {
-  return Point3m(static_cast<Scalarm>(v.x()), static_cast<Scalarm>(v.y()), static_cast<Scalarm>(v.z()));
-}
 
 /// A patch of another mesh would be appended at random places: that is a programming error.
 void refuse_foreign(const MeshModel& model, const TriangleMesh& mesh, const Patch& patch) {
@@ -198,25 +195,20 @@ MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, 
                                 const Patch& patch, const QString& name, const AppendOptions& options) {
   refuse_foreign(model, mesh, patch);
   const PatchAttributes attributes = patch_attributes(model, mesh, patch, options.left_out);
-  MeshModel* copy = document.addNewMesh("", name, false);
-  try {
-    copy_layer(model, *copy);
-    remove_faces(model.cm, options.left_out, copy->cm);
+  MeshModel& made = add_layer_with(document, name, [&](MeshModel& copy) {
+    copy_layer(model, copy);
+    remove_faces(model.cm, options.left_out, copy.cm);
     const std::vector<std::size_t> positions = positions_in_copy(model.cm);
-    append_computed(*copy, patch, attributes, positions, options);
-    split_vertices(copy->cm, options.splits, positions);
-    if (options.leave_out_vertices) remove_stray_vertices(model.cm, options.left_out, copy->cm, positions);
-  } catch (...) {
-    document.delMesh(copy);
-    throw;
-  }
-  document.setCurrentMesh(copy->id());
-  return *copy;
+    append_computed(copy, patch, attributes, positions, options);
+    split_vertices(copy.cm, options.splits, positions);
+    if (options.leave_out_vertices) remove_stray_vertices(model.cm, options.left_out, copy.cm, positions);
+  });
+  document.setCurrentMesh(made.id());
+  return made;
 }
 
-MeshModel& add_layer(MeshDocument& document, const TriangleMesh& mesh, const QString& name) {
-  MeshModel* layer = document.addNewMesh("", name, false);
-  CMeshO& to = layer->cm;
+void fill_layer(MeshModel& layer, const TriangleMesh& mesh) {
+  CMeshO& to = layer.cm;
   auto vertex = Allocator::AddVertices(to, mesh.vertices.size());
   for (const Vector3& position : mesh.vertices) (vertex++)->P() = as_point(position);
   auto face = Allocator::AddFaces(to, mesh.triangles.size());
@@ -224,8 +216,16 @@ MeshModel& add_layer(MeshDocument& document, const TriangleMesh& mesh, const QSt
     for (int corner = 0; corner < 3; ++corner) face->V(corner) = &to.vert[triangle[corner]];
     ++face;
   }
-  layer->UpdateBoxAndNormals();
-  return *layer;
+  layer.UpdateBoxAndNormals();
+}
+
+MeshModel& add_layer(MeshDocument& document, const TriangleMesh& mesh, const QString& name,
+                     const MeshModel& beside) {
+  const Matrix44m placed = beside.cm.Tr;
+  return add_layer_with(document, name, [&](MeshModel& layer) {
+    layer.cm.Tr = placed;
+    fill_layer(layer, mesh);
+  });
 }
 
 }  // namespace host

@@ -54,8 +54,13 @@ MeshModel& append_patch_to_copy(MeshDocument& document, const MeshModel& model, 
                                 const Patch& patch, const QString& name,
                                 const AppendOptions& options = AppendOptions());
 
-/// Adds a layer that holds `mesh` alone. The current layer stays current.
-MeshModel& add_layer(MeshDocument& document, const TriangleMesh& mesh, const QString& name);
+/// Gives an empty layer the vertices and faces of `mesh`, in its order.
+void fill_layer(MeshModel& layer, const TriangleMesh& mesh);
+
+/// Adds a layer that holds `mesh` alone, in the coordinates of the layer `beside`: it gets that one's
+/// transformation matrix. The current layer stays current. When it throws, the document is as before.
+MeshModel& add_layer(MeshDocument& document, const TriangleMesh& mesh, const QString& name,
+                     const MeshModel& beside);
 
 }  // namespace host
 }  // namespace meshcomplete

@@ -58,7 +58,8 @@ void append_result(FilterRun& run, MeshModel& model, const Snapshot& input, cons
   else
     append_patch(model, input.mesh, patch, options);
   for (const ExtraLayer& layer : result.layers)
-    if (!layer.mesh.triangles.empty()) add_layer(run.document, layer.mesh, derived_name(name, layer.suffix));
+    if (!layer.mesh.triangles.empty())
+      add_layer(run.document, layer.mesh, derived_name(name, layer.suffix), model);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "common/core/error.h"
 #include "common/host/meshlab_version.h"
+#include "common/host/parameter_blocks.h"
 
 namespace meshcomplete {
 namespace host {
@@ -17,15 +17,6 @@ bool anything_selected(const MeshDocument& document) {
   const auto selected = [](const auto& element) { return !element.IsD() && element.IsS(); };
   return std::any_of(model->cm.face.begin(), model->cm.face.end(), selected) ||
          std::any_of(model->cm.vert.begin(), model->cm.vert.end(), selected);
-}
-
-ParameterDeclaration parameter(ParameterType type, const char* name, const char* label, const char* meaning) {
-  ParameterDeclaration result;
-  result.type = type;
-  result.name = name;
-  result.label = label;
-  result.meaning = meaning;
-  return result;
 }
 
 ParameterDeclaration selected_parameter() {
@@ -40,75 +31,6 @@ ParameterDeclaration selected_parameter() {
 }
 
 }  // namespace
-
-ParameterDeclaration switch_parameter(const char* name, const char* label, const char* meaning, bool on) {
-  ParameterDeclaration result = parameter(ParameterType::boolean, name, label, meaning);
-  result.fallback = on;
-  return result;
-}
-
-ParameterDeclaration choice_parameter(const char* name, const char* label, const char* meaning,
-                                      QStringList choices, int fallback) {
-  ParameterDeclaration result = parameter(ParameterType::choice, name, label, meaning);
-  result.fallback = fallback;
-  result.minimum = 0;
-  result.maximum = static_cast<double>(choices.size() - 1);
-  result.choices = std::move(choices);
-  return result;
-}
-
-ParameterDeclaration integer_parameter(const char* name, const char* label, const char* meaning,
-                                       const char* unit, int fallback, int minimum, int maximum) {
-  ParameterDeclaration result = parameter(ParameterType::integer, name, label, meaning);
-  result.unit = unit;
-  result.fallback = fallback;
-  result.minimum = minimum;
-  result.maximum = maximum;
-  return result;
-}
-
-ParameterDeclaration length_parameter(const char* name, const char* label, const char* meaning) {
-  ParameterDeclaration result = parameter(ParameterType::length, name, label, meaning);
-  result.unit = "mesh units";
-  result.fallback = 0.0;
-  result.minimum = 0;
-  return result;
-}
-
-ParameterDeclaration positive_parameter(const char* name, const char* label, const char* meaning,
-                                        const char* unit, double fallback) {
-  ParameterDeclaration result = parameter(ParameterType::real, name, label, meaning);
-  result.unit = unit;
-  result.fallback = fallback;
-  result.minimum = 0;
-  result.above_minimum = true;
-  return result;
-}
-
-ParameterDeclaration point_parameter(const char* name, const char* label, const char* meaning,
-                                     const Vector3& fallback) {
-  ParameterDeclaration result = parameter(ParameterType::point, name, label, meaning);
-  result.fallback = QVariantList{fallback.x(), fallback.y(), fallback.z()};
-  return result;
-}
-
-ParameterDeclaration centre_parameter(const char* name, const char* label, const char* meaning) {
-  ParameterDeclaration result = point_parameter(name, label, meaning, Vector3::Zero());
-  result.document_default = [](const MeshDocument& document) {
-    const MeshModel* model = document.mm();
-    if (model == nullptr || model->cm.bbox.IsNull()) return QVariant();
-    const Point3m centre = model->cm.bbox.Center();
-    return QVariant(QVariantList{double(centre[0]), double(centre[1]), double(centre[2])});
-  };
-  result.default_in_words = "the centre of the bounding box";
-  return result;
-}
-
-ParameterDeclaration layer_parameter(const char* name, const char* label, const char* meaning) {
-  ParameterDeclaration result = parameter(ParameterType::layer, name, label, meaning);
-  result.default_in_words = "none";
-  return result;
-}
 
 std::vector<ParameterDeclaration> close_holes_parameters() {
   return {selected_parameter(),

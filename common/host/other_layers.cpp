@@ -5,17 +5,13 @@
 #include <utility>
 
 #include "common/core/error.h"
-#include "common/host/meshlab_version.h"
+#include "common/host/layers.h"
 
 namespace meshcomplete {
 namespace host {
 namespace {
 
 const char* const stage = "reading other layers";
-
-Vector3 as_vector(const Point3m& p) { return Vector3(p[0], p[1], p[2]); }
-
-std::string quoted(const MeshModel& layer) { return "\"" + layer.label().toStdString() + "\""; }
 
 Eigen::Matrix4d matrix_of(const MeshModel& layer) {
   Eigen::Matrix4d matrix;

@@ -306,11 +306,13 @@ TEST(AppendPatchToCopy, DeletedElementsAreLeftOut) {
   EXPECT_EQ(after.mesh.vertices[last[2]], patch.vertices.back());
 }
 
-TEST(AddLayer, HoldsTheMeshAndDoesNotBecomeCurrent) {
+TEST(AddLayer, HoldsTheMeshLiesBesideAnotherAndDoesNotBecomeCurrent) {
   Sphere sphere;
+  sphere.model.cm.Tr.SetTranslate(1, 2, 3);
   const std::string before = layer_state(sphere.model);
   const TriangleMesh mesh = test::cube();
-  const MeshModel& layer = add_layer(sphere.document, mesh, "cube");
+  const MeshModel& layer = add_layer(sphere.document, mesh, "cube", sphere.model);
+  EXPECT_TRUE(layer.cm.Tr == sphere.model.cm.Tr);
   EXPECT_EQ(sphere.document.mm(), &sphere.model);
   EXPECT_TRUE(layer_state(sphere.model) == before);
   EXPECT_EQ(snapshot(layer).mesh.triangles, mesh.triangles);

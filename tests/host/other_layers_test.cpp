@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "common/core/error.h"
-#include "common/host/close_holes_parameters.h"
+#include "common/host/parameter_blocks.h"
 #include "tests/host/fake_plugin.h"
 #include "tests/host/test_documents.h"
 #include "tests/support/meshes.h"

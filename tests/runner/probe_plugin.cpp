@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "common/core/error.h"
-#include "common/host/close_holes_parameters.h"
 #include "common/host/meshlab_version.h"
 #include "common/host/other_layers.h"
+#include "common/host/parameter_blocks.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include "tools/filter_checkcompletion/filter_checkcompletion.h"
 
 #include "common/core/mesh_statistics.h"
-#include "common/host/close_holes_parameters.h"
+#include "common/host/parameter_blocks.h"
 #include "common/host/snapshot.h"
 
 using namespace meshcomplete;
