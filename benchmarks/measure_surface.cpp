@@ -8,14 +8,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/mesh_file.h"
 #include "benchmarks/surface_distance.h"
+#include "common/core/disjoint_sets.h"
 #include "common/core/mesh_statistics.h"
-#include "common/core/mesh_topology.h"
 
 namespace {
 
@@ -23,29 +23,25 @@ using namespace meshcomplete;
 
 std::string text_of(const std::optional<long long>& genus) { return genus ? std::to_string(*genus) : "null"; }
 
-/// Number of each face's component, connected over edges.
-std::vector<std::size_t> components_of(const TriangleMesh& mesh) {
-  std::vector<std::pair<std::pair<Index, Index>, std::size_t>> edges;
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+/// The face that stands for each face's component, connected over edges.
+std::vector<Index> components_of(const TriangleMesh& mesh) {
+  std::vector<std::pair<std::pair<Index, Index>, Index>> edges;
+  for (Index f = 0; f < mesh.triangles.size(); ++f)
     for (int k = 0; k < 3; ++k)
       edges.push_back({std::minmax(mesh.triangles[f][k], mesh.triangles[f][(k + 1) % 3]), f});
   std::sort(edges.begin(), edges.end());
-  std::vector<std::size_t> parent(mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::size_t f) {
-    while (parent[f] != f) f = parent[f] = parent[parent[f]];
-    return f;
-  };
+  DisjointSets sets(mesh.triangles.size());
   for (std::size_t i = 1; i < edges.size(); ++i)
-    if (edges[i].first == edges[i - 1].first) parent[root(edges[i].second)] = root(edges[i - 1].second);
-  for (std::size_t f = 0; f < parent.size(); ++f) parent[f] = root(f);
-  return parent;
+    if (edges[i].first == edges[i - 1].first) sets.unite(edges[i].second, edges[i - 1].second);
+  std::vector<Index> component;
+  for (Index f = 0; f < mesh.triangles.size(); ++f) component.push_back(sets.root(f));
+  return component;
 }
 
 TriangleMesh largest_component(const TriangleMesh& mesh) {
-  const std::vector<std::size_t> component = components_of(mesh);
+  const std::vector<Index> component = components_of(mesh);
   std::vector<std::size_t> faces(mesh.triangles.size());
-  for (const std::size_t c : component) ++faces[c];
+  for (const Index c : component) ++faces[c];
   const auto largest = static_cast<std::size_t>(std::max_element(faces.begin(), faces.end()) - faces.begin());
   constexpr Index none = -1;
   std::vector<Index> number(mesh.vertices.size(), none);

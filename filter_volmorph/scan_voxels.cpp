@@ -5,13 +5,11 @@
 #include <utility>
 
 #include "common/core/threads.h"
+#include "filter_volmorph/block_descent.h"
 #include "filter_volmorph/voxel_blocks.h"
 
 namespace meshcomplete {
 namespace {
-
-/// The descent starts with cubes as large as OpenVDB's largest tiles.
-constexpr int largest_side = 4096;
 
 /// Voxels of a block are looked at in parts of this side, since half of a block is often uniform.
 constexpr int part_side = 4;
@@ -52,14 +50,17 @@ class Merger {
   }
 
   RangeVolume run(const VolumeSizeOptions& size, const Progress& progress) {
-    std::vector<Block> blocks = first_blocks();
-    const Progress descent = progress.part(0, 0.1, "finding the blocks near the surfaces");
-    for (int side = first_side_; !blocks.empty(); side /= 2) {
-      blocks = undecided(blocks, side, descent);
-      if (side == VoxelBlock::side) break;
-      blocks = halves(blocks, side, descent);
-      descent.update(static_cast<double>(VoxelBlock::side) / side);
-    }
+    std::vector<Block> blocks = descend_to_blocks(
+        frame_.box, everything(),
+        [&](std::vector<Block>& all, std::size_t begin, std::size_t end, int side,
+            std::vector<char>& undecided) {
+          for (std::size_t i = begin; i < end; ++i) {
+            look(all[i], side);
+            undecided[i] = !all[i].views.empty();
+            if (!undecided[i] && all[i].empty) blocks_.add_empty(all[i].low, side);
+          }
+        },
+        progress.part(0, 0.1, "finding the blocks near the surfaces"));
     check_memory(static_cast<std::size_t>(
                      std::count_if(blocks.begin(), blocks.end(), [](const Block& b) { return b.near; })),
                  size);
@@ -78,18 +79,11 @@ class Merger {
   }
 
  private:
-  std::vector<Block> first_blocks() {
-    first_side_ = VoxelBlock::side;
-    while (first_side_ < largest_side && first_side_ <= frame_.box.high.maxCoeff()) first_side_ *= 2;
+  /// A cube that every view may know of.
+  Block everything() const {
     Block block;
     for (std::uint32_t v = 0; v < views_.size(); ++v) block.views.push_back(v);
-    std::vector<Block> result;
-    const VoxelIndex& high = frame_.box.high;
-    for (block.low.x() = 0; block.low.x() <= high.x(); block.low.x() += first_side_)
-      for (block.low.y() = 0; block.low.y() <= high.y(); block.low.y() += first_side_)
-        for (block.low.z() = 0; block.low.z() <= high.z(); block.low.z() += first_side_)
-          result.push_back(block);
-    return result;
+    return block;
   }
 
   /// Narrows the views of a block down to those that may know more of it than that it is empty.
@@ -110,32 +104,6 @@ class Merger {
       block.near = block.near || view == BlockView::near;
     }
     block.views.shrink_to_fit();
-  }
-
-  std::vector<Block> undecided(std::vector<Block>& blocks, int side, const Progress& progress) {
-    for_ranges(blocks.size(), blocks_at_once, progress, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        look(blocks[i], side);
-        if (blocks[i].views.empty() && blocks[i].empty) blocks_.add_empty(blocks[i].low, side);
-      }
-    });
-    std::vector<Block> result;
-    for (Block& block : blocks)
-      if (!block.views.empty()) result.push_back(std::move(block));
-    return result;
-  }
-
-  std::vector<Block> halves(const std::vector<Block>& blocks, int side, const Progress& progress) const {
-    std::vector<Block> result;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      if (i % 4096 == 0) progress.check();
-      Block half = blocks[i];
-      for (int k = 0; k < 8; ++k) {
-        half.low = blocks[i].low + side / 2 * VoxelIndex(k >> 2, k >> 1 & 1, k & 1);
-        if (frame_.box.contains(half.low)) result.push_back(half);
-      }
-    }
-    return result;
   }
 
   /// What a view knows of one voxel.
@@ -212,7 +180,6 @@ class Merger {
   const VolumeFrame& frame_;
   const ScanVoxelOptions& options_;
   double ramp_;  ///< voxels
-  int first_side_ = VoxelBlock::side;
   std::vector<View> views_;
   VoxelBlocks blocks_;
 };

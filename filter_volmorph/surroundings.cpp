@@ -4,12 +4,14 @@
 
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "common/core/threads.h"
 #include "filter_volmorph/block_bits.h"
+#include "filter_volmorph/block_descent.h"
 #include "filter_volmorph/filler_distances.h"
 #include "filter_volmorph/small_components.h"
 #include "filter_volmorph/surface_extraction.h"
@@ -23,18 +25,22 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using StateReader = openvdb::BoolGrid::ConstAccessor;
 
-constexpr int largest_side = 4096;
 constexpr std::size_t cubes_at_once = 16;
 
 /// Cubes are as large as OpenVDB's tiles or divide them: at this depth and above a value holds for all of
 /// the cube.
 int deepest_tile(int side) { return side > 128 ? 0 : side > block_size ? 1 : 2; }
 
-/// A cube of voxels, aligned to its side.
+/// A cube of a descent.
 struct Cube {
+  VoxelIndex low = VoxelIndex::Zero();
+  Index start = 0;  ///< a face near its parent's middle
+};
+
+/// A cube whose unseen voxels become empty.
+struct CubeChange {
   Coord low;
   int side;
-  Index start;  ///< a face near its parent's middle
 };
 
 /// Voxels of a block that become empty.
@@ -72,12 +78,12 @@ BlockBits unseen_bits(const StateReader& states, const Coord& lowest) {
 }
 
 /// False where all of the cube is known to be seen or empty.
-bool may_be_unseen(const StateReader& states, const Cube& cube) {
-  if (states.getValueDepth(cube.low) <= deepest_tile(cube.side)) {
+bool may_be_unseen(const StateReader& states, const Coord& low, int side) {
+  if (states.getValueDepth(low) <= deepest_tile(side)) {
     bool empty = true;
-    return !states.probeValue(cube.low, empty) && !empty;
+    return !states.probeValue(low, empty) && !empty;
   }
-  return cube.side > block_size || any_bit(unseen_bits(states, cube.low));
+  return side > block_size || any_bit(unseen_bits(states, low));
 }
 
 /// Decides which unseen voxels lie before the surface.
@@ -86,18 +92,21 @@ class Sides {
   Sides(const RangeVolume& volume, const SurfaceSides& sides) : volume_(volume), sides_(sides) {}
 
   /// Cubes whose unseen voxels become empty, and voxels beside them; they do not overlap.
-  std::vector<Cube> cubes;
+  std::vector<CubeChange> cubes;  // in no certain order
   std::vector<BlockChange> blocks;
 
   void run(const Progress& progress) {
-    std::vector<Cube> undecided = first_cubes();
     const Progress descent = progress.part(0, 0.4, "finding what lies before the surface");
-    int side = undecided.front().side;
-    for (; side >= block_size; side /= 2) {
-      undecided = decide(undecided, descent);
-      if (side == block_size) break;
-      undecided = halves(undecided, descent);
-    }
+    const std::vector<Cube> undecided = descend_to_blocks(
+        volume_.frame().box, Cube(),
+        [&](std::vector<Cube>& all, std::size_t begin, std::size_t end, int side, std::vector<char>& left) {
+          const StateReader states = volume_.grids().state->getConstAccessor();
+          for (std::size_t i = begin; i < end; ++i) {
+            descent.check();
+            left[i] = !decide_cube(states, all[i], side);
+          }
+        },
+        descent);
     const Progress rest = progress.part(0.4, 1, "finding what lies before the surface");
     std::vector<BlockChange> changes(undecided.size());
     for_ranges(undecided.size(), cubes_at_once, rest, [&](std::size_t begin, std::size_t end) {
@@ -113,63 +122,28 @@ class Sides {
   }
 
  private:
-  std::vector<Cube> first_cubes() const {
-    const CoordBBox box = to_coord_box(volume_.frame().box);
-    int side = block_size;
-    while (side < largest_side && side < box.dim()[box.maxExtent()]) side *= 2;
-    const Coord first = box.min() & ~(side - 1);
-    std::vector<Cube> cubes;
-    for (int x = first.x(); x <= box.max().x(); x += side)
-      for (int y = first.y(); y <= box.max().y(); y += side)
-        for (int z = first.z(); z <= box.max().z(); z += side) cubes.push_back({Coord(x, y, z), side, 0});
-    return cubes;
-  }
-
   std::optional<bool> before(const Coord& low, int side, Index& start) const {
     const double half = (side - 1) / 2.0;
     const Vector3 middle = to_voxel(low).cast<double>().array() + half;
     return sides_.before(middle, std::sqrt(3) * half, start);
   }
 
-  /// Keeps the cubes that lie before the surface; returns those of which it is not sure.
-  std::vector<Cube> decide(std::vector<Cube>& all, const Progress& progress) {
-    enum class Decision : char { none, before, done };
-    std::vector<Decision> decisions(all.size(), Decision::done);
-    for_ranges(all.size(), cubes_at_once, progress, [&](std::size_t begin, std::size_t end) {
-      const StateReader states = volume_.grids().state->getConstAccessor();
-      for (std::size_t i = begin; i < end; ++i) {
-        progress.check();
-        if (!may_be_unseen(states, all[i])) continue;
-        const std::optional<bool> side = before(all[i].low, all[i].side, all[i].start);
-        decisions[i] = !side ? Decision::none : *side ? Decision::before : Decision::done;
-      }
-    });
-    std::vector<Cube> undecided;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (decisions[i] == Decision::before) cubes.push_back(all[i]);
-      if (decisions[i] == Decision::none) undecided.push_back(all[i]);
+  /// Whether it is sure of the cube. Keeps it when it lies before the surface.
+  bool decide_cube(const StateReader& states, Cube& cube, int side) {
+    const Coord low = to_coord(cube.low);
+    if (!may_be_unseen(states, low, side)) return true;
+    const std::optional<bool> known = before(low, side, cube.start);
+    if (known && *known) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      cubes.push_back({low, side});
     }
-    return undecided;
-  }
-
-  std::vector<Cube> halves(const std::vector<Cube>& all, const Progress& progress) const {
-    std::vector<Cube> result;
-    const CoordBBox box = to_coord_box(volume_.frame().box);
-    progress.check();
-    for (const Cube& cube : all) {
-      for (int k = 0; k < 8; ++k) {
-        const int side = cube.side / 2;
-        const Coord low = cube.low.offsetBy(side * (k >> 2), side * (k >> 1 & 1), side * (k & 1));
-        if (box.hasOverlap(CoordBBox::createCube(low, side))) result.push_back({low, side, cube.start});
-      }
-    }
-    return result;
+    return known.has_value();
   }
 
   BlockChange decide_voxels(const StateReader& states, const Cube& block) const {
-    BlockChange change{block.low, {}};
+    BlockChange change{to_coord(block.low), {}};
     Index start = block.start;
-    decide_part(unseen_bits(states, block.low), {0, 0, 0}, block_size / 2, start, change);
+    decide_part(unseen_bits(states, change.lowest), {0, 0, 0}, block_size / 2, start, change);
     return change;
   }
 
@@ -200,6 +174,7 @@ class Sides {
 
   const RangeVolume& volume_;
   const SurfaceSides& sides_;
+  std::mutex mutex_;  // of `cubes`
 };
 
 /// Makes the unseen voxels of a cube empty; returns how many there were.
@@ -240,7 +215,7 @@ SurroundingsResult empty_surroundings(const RangeVolume& volume, const Progress&
   const Progress changing = progress.part(0.9, 0.95, "emptying the surroundings");
   const openvdb::BoolGrid::Ptr states = volume.grids().state->deepCopy();
   std::uint64_t emptied = 0;
-  for (const Cube& cube : sides.cubes) {
+  for (const CubeChange& cube : sides.cubes) {
     changing.check();
     emptied += empty_cube(*states, cube.low, cube.side);
   }

@@ -12,6 +12,7 @@
 #include "common/core/error.h"
 #include "common/core/threads.h"
 #include "common/core/triangle_blocks.h"
+#include "filter_volmorph/block_descent.h"
 #include "filter_volmorph/surface_signs.h"
 #include "filter_volmorph/voxel_blocks.h"
 #include "filter_volmorph/winding_number.h"
@@ -19,7 +20,6 @@
 namespace meshcomplete {
 namespace {
 
-constexpr int largest_side = 4096;
 constexpr std::size_t blocks_at_once = 16;
 
 TriangleMesh in_voxels(const TriangleMesh& mesh, const VolumeFrame& frame) {
@@ -49,7 +49,7 @@ TriangleMesh usable(const TriangleMesh& mesh) {
 }
 
 struct Block {
-  VoxelIndex low;
+  VoxelIndex low = VoxelIndex::Zero();
   bool near = false;  ///< a surface may be within the ramp of some voxel
 };
 
@@ -76,14 +76,17 @@ class Voxelizer {
   std::size_t rim_edges() const { return topology_.boundary_half_edges.size(); }
 
   RangeVolume run(const VolumeSizeOptions& size, const Progress& progress) {
-    std::vector<Block> blocks = first_blocks();
     const Progress descent = progress.part(0, 0.2, "finding the blocks near the surface");
-    for (int side = first_side_; !blocks.empty(); side /= 2) {
-      blocks = undecided(blocks, side, descent);
-      if (side == VoxelBlock::side) break;
-      blocks = halves(blocks, side, descent);
-      descent.update(static_cast<double>(VoxelBlock::side) / side);
-    }
+    std::vector<Block> blocks = descend_to_blocks(
+        frame_.box, Block(),
+        [&](std::vector<Block>& all, std::size_t begin, std::size_t end, int side,
+            std::vector<char>& undecided) {
+          for (std::size_t i = begin; i < end; ++i) {
+            descent.check();
+            undecided[i] = !decide_cube(all[i], side);
+          }
+        },
+        descent);
     check_memory(static_cast<std::size_t>(
                      std::count_if(blocks.begin(), blocks.end(), [](const Block& b) { return b.near; })),
                  size);
@@ -101,17 +104,6 @@ class Voxelizer {
   }
 
  private:
-  std::vector<Block> first_blocks() {
-    first_side_ = VoxelBlock::side;
-    while (first_side_ < largest_side && first_side_ <= frame_.box.high.maxCoeff()) first_side_ *= 2;
-    std::vector<Block> result;
-    const VoxelIndex& high = frame_.box.high;
-    for (int x = 0; x <= high.x(); x += first_side_)
-      for (int y = 0; y <= high.y(); y += first_side_)
-        for (int z = 0; z <= high.z(); z += first_side_) result.push_back({{x, y, z}});
-    return result;
-  }
-
   /// The box of a block's voxel middles, and of all that is within the ramp of them.
   Box reach(const VoxelIndex& low, int side) const {
     Box box;
@@ -131,40 +123,19 @@ class Voxelizer {
     return winding > 0.5;
   }
 
-  std::vector<Block> undecided(std::vector<Block>& blocks, int side, const Progress& progress) {
-    std::vector<char> decided(blocks.size(), 0);
-    for_ranges(blocks.size(), blocks_at_once, progress, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        progress.check();
-        Block& block = blocks[i];
-        triangles_.visit(reach(block.low, side), [&](Index) {
-          block.near = true;
-          return false;
-        });
-        if (block.near) continue;
-        const double half = (side - 1) / 2.0, radius = std::sqrt(3) * half;
-        const Vector3 middle = block.low.cast<double>().array() + half;
-        const std::optional<bool> in = inside(middle, radius, radius);
-        decided[i] = in.has_value();
-        if (in && !*in) blocks_.add_empty(block.low, side);
-      }
+  /// Whether all of a cube is on one side of the surface and beyond the ramp.
+  bool decide_cube(Block& cube, int side) {
+    cube.near = false;
+    triangles_.visit(reach(cube.low, side), [&](Index) {
+      cube.near = true;
+      return false;
     });
-    std::vector<Block> result;
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      if (!decided[i]) result.push_back(blocks[i]);
-    return result;
-  }
-
-  std::vector<Block> halves(const std::vector<Block>& blocks, int side, const Progress& progress) const {
-    std::vector<Block> result;
-    progress.check();
-    for (const Block& block : blocks) {
-      for (int k = 0; k < 8; ++k) {
-        const VoxelIndex low = block.low + side / 2 * VoxelIndex(k >> 2, k >> 1 & 1, k & 1);
-        if (frame_.box.contains(low)) result.push_back({low});
-      }
-    }
-    return result;
+    if (cube.near) return false;
+    const double half = (side - 1) / 2.0, radius = std::sqrt(3) * half;
+    const Vector3 middle = cube.low.cast<double>().array() + half;
+    const std::optional<bool> in = inside(middle, radius, radius);
+    if (in && !*in) blocks_.add_empty(cube.low, side);
+    return in.has_value();
   }
 
   static Vector3 position(const VoxelIndex& low, int i) {
@@ -281,7 +252,6 @@ class Voxelizer {
   WindingNumber winding_;
   SurfaceSigns signs_;
   VoxelBlocks blocks_;
-  int first_side_ = VoxelBlock::side;
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/mesh_statistics.h"
 #include "common/core/patch.h"
 #include "common/core/patch_check.h"
@@ -33,9 +34,9 @@ struct Outcome {
 std::vector<std::vector<Triangle>> components(const std::vector<Triangle>& triangles) {
   Index vertices = 0;
   for (const Triangle& t : triangles) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});
-  test::Sets sets(vertices);
+  DisjointSets sets(vertices);
   for (const Triangle& t : triangles)
-    for (int k = 1; k < 3; ++k) sets.join(t[0], t[k]);
+    for (int k = 1; k < 3; ++k) sets.unite(t[0], t[k]);
   std::map<Index, std::vector<Triangle>> parts;
   for (const Triangle& t : triangles) parts[sets.root(t[0])].push_back(t);
   std::vector<std::vector<Triangle>> list;

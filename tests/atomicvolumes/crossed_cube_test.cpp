@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <random>
 #include <vector>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/patch.h"
 #include "filter_atomicvolumes/decomposition.h"
 #include "tests/support/volumes.h"
@@ -58,8 +58,7 @@ class Flood {
         p[k] = (box.low[k] + (box.high[k] - box.low[k]) * (2 * at[k] + 1) / (2 * n)) / 2 * 2;
       points_.push_back(p);
     }
-    parent_.resize(points_.size());
-    std::iota(parent_.begin(), parent_.end(), std::size_t(0));
+    joined_ = DisjointSets(points_.size());
     std::vector<std::pair<std::size_t, bool>> said;
     for (std::size_t i = 0; i < points_.size(); ++i)
       for (std::size_t k = 0, stride = 1; k < 3; ++k, stride *= static_cast<std::size_t>(n))
@@ -67,7 +66,7 @@ class Flood {
           cross(triangles, i, i + stride, said);
     sides_.resize(points_.size());
     for (const auto& [point, inside] : said) {
-      std::optional<bool>& side = sides_[root(point)];
+      std::optional<bool>& side = sides_[joined_.root(static_cast<Index>(point))];
       contradicting_ |= side && *side != inside;
       side = inside;
     }
@@ -75,14 +74,9 @@ class Flood {
 
   bool agrees() const { return !contradicting_; }
   const std::vector<LatticePoint>& points() const { return points_; }
-  std::optional<bool> inside(std::size_t point) { return sides_[root(point)]; }
+  std::optional<bool> inside(std::size_t point) { return sides_[joined_.root(static_cast<Index>(point))]; }
 
  private:
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
   void cross(const std::vector<LatticeTriangle>& triangles, std::size_t from, std::size_t to,
              std::vector<std::pair<std::size_t, bool>>& said) {
     std::vector<std::pair<double, bool>> crossings;
@@ -93,7 +87,7 @@ class Flood {
         crossings.emplace_back(passage_parameter(points_[from], points_[to], t), way == Passage::to_front);
     }
     if (crossings.empty()) {
-      parent_[root(from)] = root(to);
+      joined_.unite(static_cast<Index>(from), static_cast<Index>(to));
       return;
     }
     std::sort(crossings.begin(), crossings.end());
@@ -105,7 +99,7 @@ class Flood {
 
   std::int64_t n_;
   std::vector<LatticePoint> points_;
-  std::vector<std::size_t> parent_;
+  DisjointSets joined_{0};
   std::vector<std::optional<bool>> sides_;
   bool contradicting_ = false;
 };

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "common/core/disjoint_sets.h"
 #include "common/core/mesh.h"
 
 namespace meshcomplete {
@@ -42,20 +42,6 @@ struct Shape {
   std::size_t components = 0;  ///< joined by vertices
 };
 
-/// Sets that are joined one by one.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index(0)); }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index a, Index b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<Index> parent_;
-};
-
 inline Shape shape_of(const std::vector<Triangle>& triangles) {
   Shape shape;
   std::vector<std::pair<Edge, Index>> sides;  // by origin and target, with the corner at the origin
@@ -73,20 +59,20 @@ inline Shape shape_of(const std::vector<Triangle>& triangles) {
   shape.manifold &= std::adjacent_find(faces.begin(), faces.end()) == faces.end();
   std::sort(sides.begin(), sides.end());
   std::size_t edges = 0;
-  Sets fans(3 * triangles.size()), pieces(past_vertices);
+  DisjointSets fans(3 * triangles.size()), pieces(past_vertices);
   const auto next = [](Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const auto& [side, corner] = sides[i];
     shape.manifold &= i == 0 || sides[i - 1].first != side;
-    pieces.join(side.first, side.second);
+    pieces.unite(side.first, side.second);
     const auto twin =
         std::lower_bound(sides.begin(), sides.end(), std::pair(Edge(side.second, side.first), Index(0)));
     const bool paired = twin != sides.end() && twin->first == Edge(side.second, side.first);
     shape.boundary += !paired;
     edges += !paired || side.first < side.second;
     if (!paired) continue;
-    fans.join(corner, next(twin->second));
-    fans.join(next(corner), twin->second);
+    fans.unite(corner, next(twin->second));
+    fans.unite(next(corner), twin->second);
   }
   std::vector<Index> fan_of(past_vertices, 0xffffffffu);
   long vertices = 0;
