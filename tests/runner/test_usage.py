@@ -110,6 +110,15 @@ class Descriptions(RunnerCase):
         for part in ("  MaxHoleSize\n", "whole number; default: 30", "true or false"):
             self.assertIn(part, text)
 
+    def test_describe_a_range_whose_minimum_is_not_allowed(self):
+        merge = "Range Volume: Merge Scans"
+        text = " ".join(self.check(0, "--describe", merge).stdout.split())
+        self.assertIn("GrazingAngle number; above 0, up to 90; unit: degrees; default: 75", text)
+        self.assertIn("MaxMemory number; greater than 0; unit: gigabytes; default: 4", text)
+        self.make_sphere()
+        said = self.check(2, "-i", "sphere.ply", "-f", merge, "-p", "GrazingAngle=0", "-o", "out.ply").stderr
+        self.assertIn("above 0, up to 90", said)
+
     def test_describe_unknown(self):
         self.assertIn('Did you mean "Probe: Everything"?', self.check(2, "--describe", "everything").stderr)
 

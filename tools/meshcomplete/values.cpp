@@ -241,8 +241,10 @@ QString range_in_words(const ParameterDeclaration& declaration) {
   const bool low = std::isfinite(declaration.minimum);
   const bool high =
       std::isfinite(declaration.maximum) && declaration.maximum < std::numeric_limits<int>::max();
-  if (low && high)
-    return number_in_words(declaration.minimum) + " to " + number_in_words(declaration.maximum);
+  if (low && high) {
+    const QString from = number_in_words(declaration.minimum), to = number_in_words(declaration.maximum);
+    return declaration.above_minimum ? "above " + from + ", up to " + to : from + " to " + to;
+  }
   if (low)
     return (declaration.above_minimum ? "greater than " : "at least ") + number_in_words(declaration.minimum);
   if (high) return "at most " + number_in_words(declaration.maximum);
