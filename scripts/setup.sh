@@ -14,7 +14,7 @@ build_packages=(
   libtbb-dev libmaxflow-dev libopenvdb-dev dpkg-dev ca-certificates xz-utils
 )
 test_packages=(libgtest-dev libgmock-dev libopenvdb-tools python3 xvfb xauth libgl1-mesa-dri xdotool openbox imagemagick)
-benchmark_packages=(libbenchmark-dev f3d time)
+benchmark_packages=(libbenchmark-dev f3d)
 
 installed() {
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
