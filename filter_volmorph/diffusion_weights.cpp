@@ -12,7 +12,6 @@ namespace {
 const char* const stage = "spreading the normals";
 
 constexpr std::size_t blocks_at_once = 16;
-constexpr int neighbours = 26;
 
 // What is left of a neighbour's weight when it lies straight along the normal. Not 0: where only such
 // neighbours are known, theirs is the distance.
@@ -37,8 +36,8 @@ struct Neighbour {
   std::array<float, 3> direction;  // unit
 };
 
-std::array<Neighbour, neighbours> make_neighbours() {
-  std::array<Neighbour, neighbours> result{};
+std::array<Neighbour, neighbour_count> make_neighbours() {
+  std::array<Neighbour, neighbour_count> result{};
   int count = 0;
   for (int place = 0; place < 27; ++place) {
     if (place == 13) continue;
@@ -51,7 +50,10 @@ std::array<Neighbour, neighbours> make_neighbours() {
   return result;
 }
 
-const std::array<Neighbour, neighbours> all_neighbours = make_neighbours();
+const std::array<Neighbour, neighbour_count> all_neighbours = make_neighbours();
+
+// A normal, as it is stored.
+using StoredNormal = std::array<std::int16_t, 3>;
 
 // cos^2 of the angle between a neighbour's direction and the normal; of a mean of normals about the mean of
 // it, a third where none is known.
@@ -70,19 +72,24 @@ float weight_of(float share, const Neighbour& neighbour) {
   return neighbour.nearness * (least + (1 - least) * fourth * fourth);
 }
 
-// No direction is known.
-const StoredNormal undirected = {0, 0, 0};
-
 struct Around {
-  Halo<StoredNormal> normals;
+  std::array<Halo<std::int16_t>, 3> parts;
   Halo<std::uint8_t> directed;
 
-  void read(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block) {
-    gather(blocks, block, undirected, normals, [](const DiffusionBlock& from, int number) {
-      return from.directed[number] ? from.normals[number] : undirected;
+  StoredNormal normal(int number) const { return {parts[0][number], parts[1][number], parts[2][number]}; }
+
+  void read_part(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block, int k) {
+    gather(block, std::int16_t(0), parts[k], [&](std::size_t from) {
+      return blocks[from].normals.empty() ? nullptr : blocks[from].normals[k].data();
     });
-    gather(blocks, block, std::uint8_t(0), directed,
-           [](const DiffusionBlock& from, int number) { return std::uint8_t(from.directed[number]); });
+  }
+
+  void read(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block) {
+    for (int k = 0; k < 3; ++k) read_part(blocks, block, k);
+  }
+
+  void read_directed(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& block) {
+    gather(block, std::uint8_t(0), directed, [&](std::size_t from) { return blocks[from].directed.data(); });
   }
 };
 
@@ -106,9 +113,9 @@ std::vector<Arrival> arrivals(const DiffusionBlock& block, const Around& around)
     for (const Neighbour& neighbour : all_neighbours) {
       const int from = halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz);
       if (!around.directed[from]) continue;
-      const float weight = weight_of(share_along(around.normals[from], neighbour), neighbour);
+      const float weight = weight_of(share_along(around.normal(from), neighbour), neighbour);
       total += weight;
-      for (int k = 0; k < 3; ++k) sum[k] += weight * float(around.normals[from][k]);
+      for (int k = 0; k < 3; ++k) sum[k] += weight * float(around.parts[k][from]);
     }
     if (total == 0) continue;
     StoredNormal normal;
@@ -125,11 +132,11 @@ bool spread(std::vector<DiffusionBlock>& blocks, std::vector<char>& fresh, const
     Around around;
     for (std::size_t i = begin; i < end; ++i) {
       const DiffusionBlock& block = blocks[i];
-      if ((block.within & ~block.directed).none()) continue;
       if (std::none_of(block.neighbours.begin(), block.neighbours.end(),
                        [&](std::int32_t number) { return number >= 0 && fresh[number]; }))
         continue;
       around.read(blocks, block);
+      around.read_directed(blocks, block);
       arrived[i] = arrivals(block, around);
     }
   });
@@ -138,59 +145,34 @@ bool spread(std::vector<DiffusionBlock>& blocks, std::vector<char>& fresh, const
     fresh[i] = !arrived[i].empty();
     any = any || fresh[i];
     for (const Arrival& arrival : arrived[i]) {
-      blocks[i].directed[arrival.number] = true;
-      blocks[i].normals[arrival.number] = arrival.normal;
+      blocks[i].directed[arrival.number] = 1;
+      for (int k = 0; k < 3; ++k) blocks[i].normals[k][arrival.number] = arrival.normal[k];
     }
   }
   return any;
 }
 
-// For each voxel of a block the sum over its 26 neighbours, each times its nearness: the binomial blur, one
-// axis after another, without the voxel itself.
-void add_up_neighbours(const Halo<float>& part, std::array<float, block_voxels>& sum) {
-  constexpr int side = BlockValues::side, rows = block_side * block_side;
-  const auto blurred = [](float before, float here, float after) { return before + 2 * here + after; };
-  std::array<float, side * side * block_side> along_z;
-  std::array<float, side * rows> along_yz;
-  for (int row = 0; row < side * side; ++row)
-    for (int z = 0; z < block_side; ++z) {
-      const float* from = part.data() + row * side + z;
-      along_z[row * block_side + z] = blurred(from[0], from[1], from[2]);
-    }
-  for (int x = 0; x < side; ++x)
-    for (int i = 0; i < rows; ++i) {
-      const float* from = along_z.data() + x * side * block_side + i;
-      along_yz[x * rows + i] = blurred(from[0], from[block_side], from[2 * block_side]);
-    }
-  constexpr float face = 4, middle = 8;  // what they have in the blur
-  for (int x = 0; x < block_side; ++x)
-    for (int y = 0; y < block_side; ++y)
-      for (int z = 0; z < block_side; ++z) {
-        const int to = block_number(x, y, z);
-        const float* from = along_yz.data() + to;
-        const float itself = part[BlockValues::number(x, y, z)];
-        sum[to] = (blurred(from[0], from[rows], from[2 * rows]) - middle * itself) / face;
-      }
+// How much of its neighbours has a direction, for each voxel that is within: what sums of theirs are divided
+// by. 0 elsewhere.
+void weigh_neighbours(const DiffusionBlock& block, const Around& around, Block<float>& weights) {
+  Halo<float> directed;
+  std::copy(around.directed.begin(), around.directed.end(), directed.begin());
+  blur_neighbours(directed, weights);
+  for (int number = 0; number < block_voxels; ++number)
+    if (!block.within[number]) weights[number] = 0;
 }
 
 // Into `normals`, those of the sweep before the last, what the voxels within have after the next: from there
 // `factor` times the way to the means of all neighbours, whatever their direction.
-void relax_block(const DiffusionBlock& block, const Around& around, float factor,
-                 std::vector<StoredNormal>& normals) {
-  std::array<std::array<float, block_voxels>, 3> sums;
-  std::array<float, block_voxels> total;
+void relax_block(const Around& around, const Block<float>& weights, float factor,
+                 std::vector<NormalPart>& normals) {
   Halo<float> part;
-  for (int k = -1; k < 3; ++k) {  // the sum of weights, then the parts
-    for (int i = 0; i < BlockValues::count; ++i)
-      part[i] = around.directed[i] ? (k < 0 ? 1.f : float(around.normals[i][std::max(k, 0)])) : 0.f;
-    add_up_neighbours(part, k < 0 ? total : sums[k]);
+  Block<float> sums;
+  for (int k = 0; k < 3; ++k) {
+    std::copy(around.parts[k].begin(), around.parts[k].end(), part.begin());
+    blur_neighbours(part, sums);
+    relax_part(weights, sums, factor, unit, normals[k]);
   }
-  for (int number = 0; number < block_voxels; ++number)
-    for (int k = 0; k < 3 && block.within[number] && total[number] > 0; ++k) {
-      const float before = normals[number][k], mean = sums[k][number] / total[number];
-      const float next = before + factor * (mean - before);
-      normals[number][k] = std::int16_t(std::lround(std::clamp(next, -unit, unit)));
-    }
 }
 
 // Jacobi's sweeps, quickened by Chebyshev's factors (the semi-iterative method) for waves no longer than
@@ -199,22 +181,27 @@ void relax(std::vector<DiffusionBlock>& blocks, int reach, const Progress& progr
   const double wave_number = M_PI / reach;
   const double shrink = std::max(0., 1 - part_taken * wave_number * wave_number);
   const int sweeps = sweeps_per_step * reach;
-  std::vector<std::vector<StoredNormal>> other(blocks.size());
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    if (blocks[i].within.any()) other[i] = blocks[i].normals;
+  const std::vector<std::size_t> changing = blocks_to_fill(blocks);
+  std::vector<std::vector<NormalPart>> other(changing.size());
+  std::vector<Block<float>> weights(changing.size());
+  for_each(changing.size(), blocks_at_once, progress, [&](std::size_t i) {
+    const DiffusionBlock& block = blocks[changing[i]];
+    other[i] = block.normals;
+    Around around;
+    around.read_directed(blocks, block);
+    weigh_neighbours(block, around, weights[i]);
+  });
   double factor = 1;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for_ranges(blocks.size(), blocks_at_once, progress, [&](std::size_t begin, std::size_t end) {
+    for_ranges(changing.size(), blocks_at_once, progress, [&](std::size_t begin, std::size_t end) {
       Around around;
       for (std::size_t i = begin; i < end; ++i) {
-        if (blocks[i].within.none()) continue;
-        around.read(blocks, blocks[i]);
-        relax_block(blocks[i], around, float(factor), other[i]);
+        around.read(blocks, blocks[changing[i]]);
+        relax_block(around, weights[i], float(factor), other[i]);
       }
-      progress.advance(double(end - begin) / double(blocks.size()) / sweeps);
+      progress.advance(double(end - begin) / double(changing.size()) / sweeps);
     });
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      if (blocks[i].within.any()) blocks[i].normals.swap(other[i]);
+    for (std::size_t i = 0; i < changing.size(); ++i) blocks[changing[i]].normals.swap(other[i]);
     factor = 1 / (1 - shrink * shrink * (sweep == 0 ? 0.5 : 0.25 * factor));
   }
 }
@@ -223,11 +210,11 @@ void relax(std::vector<DiffusionBlock>& blocks, int reach, const Progress& progr
 void normalise(DiffusionBlock& block) {
   for (int number = 0; number < block_voxels; ++number) {
     if (!block.within[number]) continue;
-    StoredNormal& normal = block.normals[number];
-    const float length = std::sqrt(float(normal[0]) * float(normal[0]) + float(normal[1]) * float(normal[1]) +
-                                   float(normal[2]) * float(normal[2]));
-    for (int k = 0; k < 3 && length > 0; ++k)
-      normal[k] = std::int16_t(std::lround(unit * (float(normal[k]) / length)));
+    float square = 0;
+    for (const NormalPart& part : block.normals) square += float(part[number]) * float(part[number]);
+    const float length = std::sqrt(square);
+    for (NormalPart& part : block.normals)
+      if (length > 0) part[number] = std::int16_t(std::lround(unit * (float(part[number]) / length)));
   }
 }
 
@@ -235,13 +222,12 @@ void normalise(DiffusionBlock& block) {
 // against the turning of the normals, twice as much as keeps a surface's curvature: the cap over a hole in a
 // ball becomes a hump. Weighed by the voxel's own they do not drift at all, and the cap sinks.
 void make_weights(DiffusionBlock& block, const Around& around) {
-  block.weights.resize(neighbours * block_voxels);
-  for (int k = 0; k < neighbours; ++k) {
+  block.weights.resize(neighbour_count * block_voxels);
+  for (int k = 0; k < neighbour_count; ++k) {
     const Neighbour& neighbour = all_neighbours[k];
     for (int number = 0; number < block_voxels; ++number) {
-      const StoredNormal& here = around.normals[halo_number(number, 0, 0, 0)];
-      const StoredNormal& there =
-          around.normals[halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz)];
+      const StoredNormal here = around.normal(halo_number(number, 0, 0, 0));
+      const StoredNormal there = around.normal(halo_number(number, neighbour.dx, neighbour.dy, neighbour.dz));
       const float share = (share_along(here, neighbour) + share_along(there, neighbour)) / 2;
       const float weight = full_weight * weight_of(share, neighbour);
       block.weights[k * block_voxels + number] = std::uint8_t(std::max(1L, std::lround(weight)));

@@ -1,33 +1,42 @@
 // How much each neighbour counts when distances diffuse.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "common/core/progress.h"
 #include "filter_volmorph/diffusion_blocks.h"
+#include "filter_volmorph/diffusion_kernels.h"
 
 namespace meshcomplete {
 
-/// A value of each voxel of a block and of those around it; BlockValues::number says where.
-template <class Value>
-using Halo = std::array<Value, BlockValues::count>;
-
-/// Fills `halo` with `value(block, number)` of all blocks around, and `nothing` where there is no block.
-template <class Value, class Read>
-void gather(const std::vector<DiffusionBlock>& blocks, const DiffusionBlock& centre, Value nothing,
-            Halo<Value>& halo, Read&& value) {
-  const auto first = [](int step) { return step < 0 ? block_side - 1 : 0; };
-  const auto last = [](int step) { return step > 0 ? 0 : block_side - 1; };
-  for (int place = 0; place < 27; ++place) {
-    const int dx = place / 9 - 1, dy = place / 3 % 3 - 1, dz = place % 3 - 1;
+/// Fills `halo` with the values of all blocks around, and `nothing` where there are none. `values(block)` is
+/// a pointer to those of a block, by block_number, or null.
+template <class Value, class Values>
+void gather(const DiffusionBlock& centre, Value nothing, Halo<Value>& halo, Values&& values) {
+  std::array<const Value*, 27> sources;
+  for (std::size_t place = 0; place < sources.size(); ++place) {
     const std::int32_t number = centre.neighbours[place];
-    for (int x = first(dx); x <= last(dx); ++x)
-      for (int y = first(dy); y <= last(dy); ++y)
-        for (int z = first(dz); z <= last(dz); ++z)
-          halo[BlockValues::number(x + block_side * dx, y + block_side * dy, z + block_side * dz)] =
-              number < 0 ? nothing : value(blocks[number], block_number(x, y, z));
+    sources[place] = number < 0 ? nullptr : values(static_cast<std::size_t>(number));
   }
+  const auto copy = [&](int place, int from, int count, int to) {
+    const Value* source = sources[static_cast<std::size_t>(place)];
+    if (source == nullptr)
+      std::fill_n(halo.begin() + to, count, nothing);
+    else
+      std::copy_n(source + from, count, halo.begin() + to);
+  };
+  for (int x = -1; x <= block_side; ++x)
+    for (int y = -1; y <= block_side; ++y) {
+      const int bx = x < 0 ? 0 : x < block_side ? 1 : 2, by = y < 0 ? 0 : y < block_side ? 1 : 2;
+      const int row = block_number(x - block_side * (bx - 1), y - block_side * (by - 1), 0);
+      const int place = bx * 9 + by * 3;
+      copy(place, row + block_side - 1, 1, BlockValues::number(x, y, -1));
+      copy(place + 1, row, block_side, BlockValues::number(x, y, 0));
+      copy(place + 2, row, 1, BlockValues::number(x, y, block_side));
+    }
 }
 
 /// Of the 26 neighbours, in the order of `DiffusionBlock::neighbours` without the voxel itself, for each

@@ -25,6 +25,9 @@ struct DiffusionOptions {
 
   /// Whether distances spread along the surface, perpendicular to the normals, rather than across it.
   bool normals = true;
+
+  /// Bytes that the voxels within reach may take, above 0.
+  double max_memory = 4e9;
 };
 
 /// Davis, Marschner, Garr and Levoy (2002), sections 3 and 4.3, in a box (cut to the volume's): in each step
@@ -33,9 +36,9 @@ struct DiffusionOptions {
 /// (Firestone 2008, chapter 5), which spreads from the seen voxels, too. What an earlier diffusion filled is
 /// known from the start: two runs of n steps are one of 2 n. Only distances of voxels that are not seen
 /// change; states, weights and normals are shared with `volume`, and what stays unfilled is filled as VRIP
-/// does. Throws CompletionError when the box lies outside the volume or an option is out of its range.
-/// Deterministic. Cost: proportional to iterations times the voxels within reach; about 60 bytes for each of
-/// these; threaded.
+/// does. Throws CompletionError when the box lies outside the volume, an option is out of its range, or the
+/// voxels within reach take more memory than allowed. Deterministic. Cost: proportional to iterations times
+/// the voxels within reach; about 60 bytes for each of these; threaded.
 RangeVolume diffuse(const RangeVolume& volume, const VoxelBox& box, const DiffusionOptions& options,
                     const Progress& progress = Progress());
 
