@@ -1,4 +1,4 @@
-"""The filters "Range Volume: ..." as users run them: from scans with poses to a closed surface, step by step."""
+"""The filters "Range Volume: ..." as users run them on a volume: to a closed surface, step by step."""
 
 import math
 import os
@@ -6,168 +6,17 @@ import pathlib
 import re
 import shutil
 import signal
-import struct
 import subprocess
-import sys
-import tempfile
 import time
 import unittest
 
-from runner_case import CHECK, Ply, RunnerCase, sphere, write_ply
+from runner_case import CHECK, Ply, sphere, without, write_ply
+from volume_case import (EXTRACT, FILL, MERGE, MERGED, MORPHOLOGY, OPEN, SAVE, SLICE, STRIPPED, VOXEL, VOXELIZE, VolumeCase,
+                         range_scans)
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-import range_scans  # noqa: E402
-from png_images import read_png  # noqa: E402
+from png_images import read_png  # in tests/support, which volume_case adds to the path
 
-MERGE, VOXELIZE, OPEN, SAVE, MORPHOLOGY, FILL, EXTRACT, SLICE = (
-    f"Range Volume: {name}"
-    for name in ("Merge Scans", "Voxelize Mesh", "Open", "Save", "Morphology", "Fill", "Extract Surface", "Slice"))
-VOXEL = 0.06
-MERGED = ("-f", MERGE, "-p", f"VoxelSize={VOXEL}", "Ramp=0.18", "LineOfSight=Z axis of each layer")
-# What is unseen and open to the outside goes; what is left is the inside of the observed surface.
-STRIPPED = ("-f", MORPHOLOGY, "-p", "Operators=e60", "Measure=false")
 EMPTY, UNSEEN, SEEN = (0, 0, 0), (139, 90, 43), (255, 255, 255)
-
-
-class VolumeCase(RunnerCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.scans = pathlib.Path(tempfile.mkdtemp(prefix="range scans "))
-        cls.addClassCleanup(shutil.rmtree, cls.scans, ignore_errors=True)
-        cls.project = range_scans.make_project(cls.scans)
-        cls.half = cls.scans / "half.mlp"
-
-    def merged(self, *arguments, project=None, code=0):
-        """Merges the scans and goes on as the arguments say."""
-        return self.check(code, "-p", project or self.project, *MERGED, *arguments)
-
-    def figures(self, filter_name, number=0):
-        """The report's figures of a filter: of the first one of that name, or the number-th."""
-        found = [entry for entry in self.read_report()["filters"] if entry["name"] == filter_name]
-        return found[number]["figures"]
-
-    def said(self, result, pattern):
-        found = re.search(pattern, result.stdout)
-        self.assertIsNotNone(found, f"{pattern} not in\n{result.stdout}")
-        return found
-
-    def size(self, result):
-        return tuple(int(n) for n in self.said(result, r"Volume of (\d+) x (\d+) x (\d+) voxels").groups())
-
-    def counts(self, result):
-        """Seen, unseen and empty voxels of every volume that the log tells of, in order."""
-        return [tuple(map(int, found)) for found in
-                re.findall(r"voxels of \S+: (\d+) seen, (\d+) unseen, (\d+) empty", result.stdout)]
-
-    def assert_solid(self, result, genus):
-        """What Check Completion says of a closed manifold surface of one component."""
-        for line in ("Boundary edges: 0", "Non-manifold edges: 0", "Non-manifold vertices: 0", "Watertight: yes",
-                     "Connected components: 1", f"Genus: {genus}", "Self-intersecting pairs of faces: 0"):
-            self.assertIn(line, result.stdout)
-
-    def refused(self, *arguments, code=1, outputs=("out.ply",)):
-        """The run fails and writes nothing; returns its message."""
-        result = self.check(code, *arguments, "-o", "out.ply")
-        for name in outputs:
-            self.assertFalse(os.path.exists(self.path(name)), result.stderr)
-        return " ".join(result.stderr.split())
-
-
-class Merging(VolumeCase):
-    def test_a_closed_surface_with_one_handle(self):
-        """All that the scanners saw of the solid is there, and its surface is where the solid ends."""
-        result = self.merged(*STRIPPED, "-f", EXTRACT, "-f", CHECK, "-o", "out.ply", "--report", "report.json")
-        self.assert_solid(result, genus=1)
-        mesh = Ply(self.path("out.ply"))
-        self.assertEqual(self.figures(EXTRACT)["surface genus"], 1)
-        self.assertEqual(self.figures(EXTRACT)["surface faces"], len(mesh.triangles))
-        self.assertEqual(self.figures(EXTRACT)["surface boundary loops"], 0)
-        ball = [math.dist(point, (0, 0, 0)) for point in mesh.points if point[0] < 0]
-        self.assertLess(max(abs(radius - range_scans.RADIUS) for radius in ball), VOXEL)
-        self.assertAlmostEqual(max(point[0] for point in mesh.points), 2.4, delta=VOXEL)
-        volume = float(self.said(result, r"(?m)^Volume: ([\d.]+)$")[1])
-        step = 0.05
-        lattice = ((step * (i + 0.5) - 1, step * (j + 0.5) - 1, step * (k + 0.5) - 1)
-                   for i in range(68) for j in range(40) for k in range(40))
-        truth = step ** 3 * sum(map(range_scans.inside, lattice))
-        self.assertAlmostEqual(volume, truth, delta=0.03 * truth)
-
-    def test_the_report_adds_up(self):
-        result = self.merged("-f", EXTRACT, "-o", "out.ply", "--report", "report.json")
-        width, height, depth = self.size(result)
-        figures = self.figures(MERGE)
-        self.assertEqual(sum(figures[f"{state} voxels"] for state in ("seen", "unseen", "empty")), width * height * depth)
-        self.assertGreater(figures["volume bytes"], 4 * figures["seen voxels"])
-        self.assertEqual(self.read_report()["exit_code"], 0)
-        self.assertEqual(len(re.findall(r"the scan 'scan_\d.ply': \d+ faces, \d+ dropped", result.stdout)), 8)
-
-    def test_faces_across_depth_steps_are_dropped(self):
-        """Left in, they would be walls between the handle and the ball."""
-        result = self.merged("-o", "out.ply")
-        for dropped in re.findall(r"faces, (\d+) dropped", result.stdout):
-            self.assertGreater(int(dropped), 20)
-        kept = self.check(0, "-p", self.project, *MERGED, "LongestEdge=100", "GrazingAngle=90", "-o", "all.ply")
-        for long_edges, grazing in re.findall(r"\((\d+) long, (\d+) grazing", kept.stdout):
-            self.assertEqual((long_edges, grazing), ("0", "0"))
-        self.assertGreater(self.counts(kept)[0][0], self.counts(result)[0][0])
-
-    def test_the_scans_own_axes_are_found(self):
-        result = self.check(0, "-p", self.project, "-f", MERGE, "-p", f"VoxelSize={VOXEL}", "Ramp=0.18",
-                            "LineOfSight=Own axis of each scan", "-o", "out.ply")
-        found = re.findall(r"scan_(\d).ply'.*seen along \((\S+) (\S+) (\S+)\)", result.stdout)
-        self.assertEqual(len(found), 8)
-        for number, *axis in found:
-            truth = range_scans.pose(range_scans.DIRECTIONS[int(number)])[2]
-            cosine = sum(float(a) * b for a, b in zip(axis, truth))
-            self.assertGreater(cosine, math.cos(math.radians(5)))
-
-    def test_a_viewpoint(self):
-        """A scanner far away sees as parallel rays do."""
-        scan = self.scans / "scan_0.ply"
-        far = " ".join(str(1000 * (i == 2)) for i in range(3))
-        near_z = ("-f", MERGE, "-p", f"VoxelSize={VOXEL}", "Ramp=0.18")
-        parallel = self.check(0, "-i", scan, *near_z, "LineOfSight=Z axis of each layer", "-o", "a.ply")
-        viewpoint = self.check(0, "-i", scan, *near_z, "LineOfSight=Viewpoint", f"Viewpoint={far}", "-o", "b.ply")
-        self.assertIn("seen from (0 0 1000)", viewpoint.stdout)
-        seen, from_there = self.counts(parallel)[0][0], self.counts(viewpoint)[0][0]
-        self.assertLess(abs(seen - from_there), 0.02 * seen)
-
-    def test_carving_only_empties(self):
-        carved = self.merged("-o", "a.ply")
-        plain = self.check(0, "-p", self.project, *MERGED, "Carving=false", "-o", "b.ply")
-        self.assertEqual(self.counts(carved)[0][0], self.counts(plain)[0][0])
-        self.assertGreaterEqual(self.counts(carved)[0][2], self.counts(plain)[0][2])
-
-    def test_the_input_layers_stay_as_they_are(self):
-        def scans():
-            return {path.name: path.read_bytes() for path in self.scans.iterdir()}
-        before = scans()
-        first = range_scans.scan(range_scans.DIRECTIONS[3], 0.06)
-        self.merged(*STRIPPED, "-o", "volume.ply", "-o", "scan.ply", "-l", "3")
-        kept = Ply(self.path("scan.ply"))
-        self.assertEqual(kept.triangles, first[1])
-        self.assertEqual(kept.points, [struct.unpack("<3f", struct.pack("<3f", *v)) for v in first[0]])
-        self.assertEqual(scans(), before)
-
-    def test_the_layer_shows_the_surface_as_points(self):
-        self.merged("-o", "out.ply", "-m", "vn", "vq")
-        mesh = Ply(self.path("out.ply"))
-        self.assertEqual(mesh.triangles, [])
-        self.assertGreater(len(mesh.points), 1000)
-        self.assertTrue(all(vertex["quality"] > 0 for vertex in mesh.elements["vertex"]))
-        for vertex in mesh.elements["vertex"]:
-            point = tuple(vertex[axis] for axis in "xyz")
-            if vertex["x"] < 0:
-                self.assertLess(abs(math.dist(point, (0, 0, 0)) - range_scans.RADIUS), 1.8 * VOXEL)
-                self.assertGreater(sum(vertex["n" + axis] * vertex[axis] for axis in "xyz"), 0.5)
-
-    def test_threads_do_not_matter(self):
-        results = []
-        for threads in (1, 2):
-            self.merged("-f", FILL, "-p", "Iterations=10", "Measure=false", "-f", SAVE, "-p", "File=v.vdb", "-f", EXTRACT,
-                        "-o", "out.ply", "--threads", threads)
-            results.append(pathlib.Path(self.path("out.ply")).read_bytes())
-        self.assertEqual(results[0], results[1])
 
 
 class Slices(VolumeCase):
@@ -334,6 +183,27 @@ class Changing(VolumeCase):
         self.assertGreater(min(radii), 0.85)
         self.assertLess(max(radii), 1.1)
 
+    def test_filling_a_wide_hole(self):
+        """A sphere without its cap of 120 degrees. Unfilled it ends flat. Filled it is whole: not without the normals, nor as
+        far as voxelizing says that what lies before the flat end is empty and the filter is to believe that."""
+        vertices, faces = sphere(rings=36, segments=54, hole=False)
+        write_ply(self.path("in.ply"), vertices, without(vertices, faces, [(0.5, 2)]))
+        sightless = ("Measure=false", "LineOfSight=false")
+        share = {}
+        for name, steps in (("unfilled", ()), ("filled", ("-f", FILL, "-p", *sightless)),
+                            ("sight", ("-f", FILL, "-p", "Measure=false")),
+                            ("normals", ("-f", FILL, "-p", *sightless, "Normals=false")),
+                            ("operator", ("-f", MORPHOLOGY, "-p", "Operators=v1", *sightless))):
+            result = self.check(0, "-i", "in.ply", "-f", VOXELIZE, "-p", "VoxelSize=0.08", *steps, "-f", EXTRACT, "-f", CHECK,
+                                "-o", f"{name}.ply")
+            self.assert_solid(result, genus=0)
+            share[name] = float(self.said(result, r"(?m)^Volume: ([\d.]+)$")[1]) / (4 / 3 * math.pi)
+        self.assertAlmostEqual(share["filled"], 1, delta=0.03)
+        for name in ("unfilled", "sight", "normals"):
+            self.assertLess(share[name], 0.95, name)
+        self.assertGreater(int(self.said(result, r"v1: (\d+) voxels changed")[1]), 1000)
+        self.assertEqual(*(pathlib.Path(self.path(f"{name}.ply")).read_bytes() for name in ("filled", "operator")))
+
     def test_iterations_and_reach_bound_the_diffusion(self):
         few = self.changed("Operators=v1", "Iterations=1")
         many = self.changed("Operators=v1", "Iterations=30")
@@ -478,15 +348,34 @@ class Refusals(VolumeCase):
 
 
 class Cancelling(VolumeCase):
+    def assert_cancels(self, delay, *arguments, begun=None):
+        """Ctrl-C so many seconds after the start, or after a filter has begun, ends a long run soon; nothing is written."""
+        process = subprocess.Popen(self.command(*arguments, "-o", "out.ply"), cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        if begun:
+            self.assertTrue(any(begun in line for line in process.stderr), f"{begun} did not begin")
+        time.sleep(delay)
+        self.assertIsNone(process.poll(), "the run is not long")
+        start = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertIn(process.returncode, (130, -signal.SIGINT))
+        self.assertLess(time.monotonic() - start, 5)
+        self.assertEqual(os.listdir(self.folder), [])
+
     def test_ctrl_c_during_a_long_merge(self):
         for delay in (0.7, 1.5, 3):
-            command = self.command("-p", self.project, "-f", MERGE, "-p", "VoxelSize=0.004", "Ramp=0.1", "MaxMemory=20",
-                                   "LineOfSight=Z axis of each layer", "-f", EXTRACT, "-o", "out.ply")
-            process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(delay)
-            self.assertIsNone(process.poll(), "the merge is not long")
-            start = time.monotonic()
-            process.send_signal(signal.SIGINT)
-            self.assertIn(process.wait(timeout=60), (130, -signal.SIGINT))
-            self.assertLess(time.monotonic() - start, 5)
-            self.assertEqual(os.listdir(self.folder), [])
+            self.assert_cancels(delay, "-p", self.project, "-f", MERGE, "-p", "VoxelSize=0.004", "Ramp=0.1", "MaxMemory=20",
+                                "LineOfSight=Z axis of each layer", "-f", EXTRACT)
+
+    def test_ctrl_c_while_a_volume_changes(self):
+        """While it is filled, and while a long sequence of operators goes over it."""
+        volume = self.scans / "volume.vdb"
+        self.merged("-f", SAVE, "-p", f"File={volume}", "-o", "out.ply", project=self.half)
+        os.remove(self.path("out.ply"))
+        for name, *parameters in ((FILL, "Iterations=100000"), (MORPHOLOGY, "Operators=" + 2000 * "d3 e3 ")):
+            for delay in (0, 0.5):
+                with self.subTest(name, delay=delay):
+                    self.assert_cancels(delay, "-f", OPEN, "-p", f"File={volume}", "-f", name, "-p", *parameters,
+                                        "Measure=false", begun=name)
