@@ -87,7 +87,7 @@ TEST(VolumeDiffusion, equals_the_dense_one_where_regions_are_uniform) {
     options.reach = seed % 2 == 0 ? 3 : 9;
     filled += expect_same_both_ways(volume, random_box(volume.frame().box, seed + 2000), options);
   }
-  EXPECT_GT(filled, 10000u);
+  EXPECT_GT(filled, 5000u);
 }
 
 TEST(VolumeDiffusion, equals_the_dense_one_after_another_filler) {
@@ -98,7 +98,7 @@ TEST(VolumeDiffusion, equals_the_dense_one_after_another_filler) {
     const RangeVolume volume = with_filler_distances(random_volume(box, seed).volume());
     filled += expect_same_both_ways(volume, random_box(box, seed + 3000), few_steps(seed));
   }
-  EXPECT_GT(filled, 10000u);
+  EXPECT_GT(filled, 5000u);
 }
 
 TEST(VolumeDiffusion, equals_the_dense_one_on_a_hole_in_a_sphere_and_on_single_values_of_blocks) {
