@@ -17,6 +17,17 @@ constexpr int normal_bits = 10;
 constexpr int largest_part = (1 << (normal_bits - 1)) - 1;
 constexpr int part_mask = (1 << normal_bits) - 1;
 
+std::uint64_t unseen_voxels(const openvdb::BoolTree& states) {
+  std::uint64_t count = 0;
+  for (auto leaf = states.cbeginLeaf(); leaf; ++leaf)
+    count += static_cast<std::uint64_t>(count_bits(unseen_bits(*leaf)));
+  auto tile = states.cbeginValueOff();
+  tile.setMaxDepth(openvdb::BoolTree::ValueOffCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (!tile.getValue()) count += tile.getVoxelCount();
+  return count;
+}
+
 }  // namespace
 
 RangeVolume::RangeVolume(const VolumeFrame& frame, std::shared_ptr<const VolumeGrids> grids)
@@ -31,8 +42,7 @@ VolumeCounts RangeVolume::counts() const {
   const VoxelIndex size = frame_.box.size();
   VolumeCounts counts;
   counts.seen = grids_->state->activeVoxelCount();
-  for (auto value = grids_->state->cbeginValueOff(); value; ++value)
-    if (!value.getValue()) counts.unseen += value.getVoxelCount();
+  counts.unseen = unseen_voxels(grids_->state->tree());
   const std::uint64_t all = std::uint64_t(size.x()) * std::uint64_t(size.y()) * std::uint64_t(size.z());
   counts.empty = all - counts.seen - counts.unseen;
   counts.filled = grids_->distance->activeVoxelCount() - counts.seen;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 
 #include "common/core/parameter_checks.h"
 #include "common/core/threads.h"
@@ -64,6 +65,13 @@ std::optional<std::string> frame_fault(const VolumeFrame& frame) {
   if (!frame.origin.allFinite()) return "its origin is not a point";
   if (frame.box.empty()) return "its box has no voxels";
   if (frame.box.low.minCoeff() < -largest_voxel_number || frame.box.high.maxCoeff() > largest_voxel_number)
+    return "its box is too large";
+  // Whose voxels cannot be counted.
+  const VoxelIndex size = frame.box.size();
+  std::uint64_t voxels = 0;
+  if (__builtin_mul_overflow(static_cast<std::uint64_t>(size.x()), static_cast<std::uint64_t>(size.y()),
+                             &voxels) ||
+      __builtin_mul_overflow(voxels, static_cast<std::uint64_t>(size.z()), &voxels))
     return "its box is too large";
   return {};
 }

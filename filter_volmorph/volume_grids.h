@@ -3,6 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include "filter_volmorph/block_bits.h"
 #include "filter_volmorph/range_volume.h"
 
 namespace meshcomplete {
@@ -27,6 +28,14 @@ inline openvdb::CoordBBox to_coord_box(const VoxelBox& box) {
 
 /// OpenVDB's registry of grid types, filled once; every function that makes or reads grids calls it.
 void prepare_openvdb();
+
+/// The unseen voxels of a leaf of the states.
+inline BlockBits unseen_bits(const openvdb::BoolTree::LeafNodeType& states) {
+  BlockBits bits;
+  for (int x = 0; x < block_size; ++x)
+    bits[x] = ~states.valueMask().getWord<std::uint64_t>(x) & ~states.buffer().data()[x];
+  return bits;
+}
 
 /// Reads voxels one after another, fast where they are neighbours. For one thread.
 class VoxelReader {
