@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -59,6 +60,38 @@ Filling fill(const InputNeighbourhood& input, const BoundaryLoop& loop, const Pr
   return {Patch(), {}, reason_for(defect, input, loop)};
 }
 
+std::vector<Box> reordered(const std::vector<Box>& boxes, const std::vector<Index>& order) {
+  std::vector<Box> result;
+  result.reserve(order.size());
+  for (const Index i : order) result.push_back(boxes[i]);
+  return result;
+}
+
+// Triangles, none of them degenerate, that others are held against.
+class TriangleTree {
+ public:
+  explicit TriangleTree(const std::vector<Corners>& triangles) {
+    std::vector<Box> boxes;
+    for (const Corners& t : triangles) boxes.push_back(bounding_box(t[0], t[1], t[2]));
+    const std::vector<Index> order = spatial_order(boxes);
+    for (const Index i : order) triangles_.push_back(triangles[i]);
+    tree_ = BoxTree(reordered(boxes, order));
+  }
+
+  bool meets(const std::vector<Corners>& others, const Progress& progress) const {
+    for (const Corners& t : others) {
+      progress.check();
+      const Box box = bounding_box(t[0], t[1], t[2]);
+      if (!tree_.visit(box, [&](std::size_t i) { return !meet_improperly(t, triangles_[i]); })) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::vector<Corners> triangles_;
+  BoxTree tree_;
+};
+
 // The fans of one run, each sound by itself, and which of them can be together.
 class Fans {
  public:
@@ -72,7 +105,6 @@ class Fans {
  private:
   std::vector<std::size_t> by_preference() const;
   std::vector<Corners> triangles(std::size_t hole) const;
-  bool meet(std::size_t a, std::size_t b) const;
 
   const TriangleMesh& mesh_;
   const std::vector<BoundaryLoop>& loops_;
@@ -119,33 +151,32 @@ std::vector<Corners> Fans::triangles(std::size_t hole) const {
   return list;
 }
 
-// Whether two fans meet, or have their new vertices at one place.
-bool Fans::meet(std::size_t a, std::size_t b) const {
-  const std::vector<Vector3>&apex_a = fillings_[a].patch.vertices, &apex_b = fillings_[b].patch.vertices;
-  if (!apex_a.empty() && apex_a == apex_b) return true;
-  return !improper_pairs_between(triangles(a), triangles(b)).empty();
-}
-
-// Of fans that meet, the one that comes first in the order of preference stays.
+// Of fans that meet, the one that comes first in the order of preference stays. (Each is held against all
+// before it, which have fewer edges: what is built for it is built once, however many these are.)
 void Fans::separate(const Progress& progress) {
   const std::vector<std::size_t> filled = by_preference();
   std::vector<Box> boxes;
   for (const std::size_t hole : filled) {
+    progress.check();
     Box box;
     for (const Corners& t : triangles(hole)) box.include(bounding_box(t[0], t[1], t[2]));
     boxes.push_back(box);
   }
   const std::vector<Index> order = spatial_order(boxes);
-  std::vector<Box> ordered;
-  for (const Index i : order) ordered.push_back(boxes[i]);
-  const BoxTree tree(std::move(ordered));
+  const BoxTree tree(reordered(boxes, order));
   for (std::size_t i = 0; i < filled.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(filled.size()));
+    const Patch& patch = fillings_[filled[i]].patch;
+    std::optional<TriangleTree> fan;
     bool free = true;
     tree.visit(boxes[i], [&](std::size_t leaf) {
       const std::size_t other = order[leaf];
-      // Those that were dropped have no patch any more.
-      if (other < i && !fillings_[filled[other]].patch.empty()) free = !meet(filled[other], filled[i]);
+      if (other >= i) return true;
+      const Patch& before = fillings_[filled[other]].patch;
+      if (before.empty()) return true;  // it was dropped
+      if (!fan) fan.emplace(triangles(filled[i]));
+      const bool same_apex = !patch.vertices.empty() && patch.vertices == before.vertices;
+      free = !same_apex && !fan->meets(triangles(filled[other]), progress);
       return free;
     });
     if (!free) fillings_[filled[i]] = {Patch(), {}, "the patch meets the patch of another hole"};
