@@ -19,6 +19,9 @@ LineOfSight line_of_sight(const MeshModel& layer, Sight sight, const Vector3& vi
     throw CompletionError(reading,
                           "The layer " + quoted(layer) + " has no camera. Choose another line of sight.");
   if (sight == Sight::camera || (sight == Sight::automatic && camera)) {
+    // The camera looks against its third axis.
+    if (layer.cm.shot.Intrinsics.IsOrtho())
+      return LineOfSight::parallel(direction_in_project(layer, as_vector(layer.cm.shot.Axis(2))));
     return LineOfSight::from(point_in_project(layer, as_vector(layer.cm.shot.GetViewPoint())));
   }
   if (sight == Sight::viewpoint) return LineOfSight::from(viewpoint);
@@ -55,19 +58,18 @@ void log_scan(const FilterRun& run, const ScanFigures& scan) {
   const DepthStepCounts& faces = scan.faces;
   const Vector3& v = scan.line_of_sight.vector;
   const bool parallel = scan.line_of_sight.kind == LineOfSight::Kind::parallel;
-  run.log(QString("%1: %2 faces, %3 dropped (%4 long, %5 grazing, %6 from behind, %7 degenerate); seen %8 "
-                  "(%9 %10 %11)")
-              .arg(QString::fromStdString(scan.name))
-              .arg(faces.kept)
-              .arg(faces.dropped())
-              .arg(faces.long_edge)
-              .arg(faces.grazing)
-              .arg(faces.from_behind)
-              .arg(faces.degenerate)
-              .arg(parallel ? "along" : "from")
-              .arg(v[0], 0, 'g', 4)
-              .arg(v[1], 0, 'g', 4)
-              .arg(v[2], 0, 'g', 4));
+  const auto number = [](double x) { return QString::number(x, 'g', 4); };
+  const QString dropped = QString("%1 long, %2 grazing, %3 from behind, %4 degenerate")
+                              .arg(faces.long_edge)
+                              .arg(faces.grazing)
+                              .arg(faces.from_behind)
+                              .arg(faces.degenerate);
+  const QString seen =
+      QString("%1 (%2 %3 %4)").arg(parallel ? "along" : "from", number(v[0]), number(v[1]), number(v[2]));
+  // Together: what looks like a place for an argument in the name is none.
+  run.log(QString("%1: %2 faces, %3 dropped (%4); seen %5")
+              .arg(QString::fromStdString(scan.name), QString::number(faces.kept),
+                   QString::number(faces.dropped()), dropped, seen));
 }
 
 }  // namespace host

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/core/error.h"
+#include "common/host/layers.h"
 #include "common/host/meshlab_version.h"
 #include "common/host/other_layers.h"
 #include "common/host/parameter_blocks.h"
@@ -132,6 +133,25 @@ FilterDeclaration layers() {
   return filter;
 }
 
+/// Gives the current layer a camera of parallel rays.
+FilterDeclaration parallel_camera() {
+  FilterDeclaration filter;
+  filter.name = "Probe: Parallel Camera";
+  filter.python_name = "probe_parallel_camera";
+  filter.description = "Sets an orthographic camera.";
+  filter.parameters = {point_parameter("From", "From", "Where it stands.", Vector3(0, 0, 1)),
+                       point_parameter("Towards", "Towards", "Where it looks.", Vector3(0, 0, -1))};
+  filter.apply = [](FilterRun& run) {
+    const Vector3 from = run.parameters.point("From"), towards = run.parameters.point("Towards");
+    Shotm& shot = run.document.mm()->cm.shot;
+    shot.Intrinsics.SetOrtho(-1, 1, -1, 1, vcg::Point2i(100, 100));
+    shot.Intrinsics.PixelSizeMm = vcg::Point2<Scalarm>(1, 1);
+    shot.SetViewPoint(as_point(from));
+    shot.LookTowards(as_point(towards), Point3m(0, 1, 0));
+  };
+  return filter;
+}
+
 /// Code that goes wrong in ways that a filter must not.
 FilterDeclaration bad_code() {
   FilterDeclaration filter;
@@ -152,4 +172,4 @@ FilterDeclaration bad_code() {
 
 }  // namespace
 
-ProbePlugin::ProbePlugin() { declare({probe(), layers(), bad_code()}, this); }
+ProbePlugin::ProbePlugin() { declare({probe(), layers(), parallel_camera(), bad_code()}, this); }
