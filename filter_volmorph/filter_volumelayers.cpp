@@ -69,7 +69,8 @@ vcg::Color4b colour(const std::uint8_t* pixel) { return vcg::Color4b(pixel[0], p
 
 void add_corners(CMeshO& mesh, const VolumeSlice& slice, const VolumeFrame& frame) {
   const auto [across, along] = slice_axes(slice.axis);
-  auto vertex = Allocator::AddVertices(mesh, static_cast<std::size_t>(slice.width + 1) * (slice.height + 1));
+  auto vertex = Allocator::AddVertices(
+      mesh, (static_cast<std::size_t>(slice.width) + 1) * (static_cast<std::size_t>(slice.height) + 1));
   const Vector3 first = voxel_of_pixel(frame, slice.axis, slice.position, 0, 0).cast<double>();
   for (int row = 0; row <= slice.height; ++row)
     for (int column = 0; column <= slice.width; ++column) {
@@ -82,16 +83,16 @@ void add_corners(CMeshO& mesh, const VolumeSlice& slice, const VolumeFrame& fram
 
 // Two triangles for each pixel, with the edge between them hidden.
 void add_squares(CMeshO& mesh, const VolumeSlice& slice) {
-  const int row_length = slice.width + 1;
+  const std::size_t row_length = static_cast<std::size_t>(slice.width) + 1;
   auto face = Allocator::AddFaces(mesh, 2 * static_cast<std::size_t>(slice.width) * slice.height);
   for (int row = 0; row < slice.height; ++row)
     for (int column = 0; column < slice.width; ++column) {
-      const int top = row * row_length + column, bottom = top + row_length;
-      const std::array<std::array<int, 3>, 2> halves = {
+      const std::size_t top = static_cast<std::size_t>(row) * row_length + static_cast<std::size_t>(column),
+                        bottom = top + row_length;
+      const std::array<std::array<std::size_t, 3>, 2> halves = {
           {{top, bottom, bottom + 1}, {top, bottom + 1, top + 1}}};
       for (int half = 0; half < 2; ++half, ++face) {
-        for (int corner = 0; corner < 3; ++corner)
-          face->V(corner) = &mesh.vert[static_cast<std::size_t>(halves[half][corner])];
+        for (int corner = 0; corner < 3; ++corner) face->V(corner) = &mesh.vert[halves[half][corner]];
         face->SetF(half == 0 ? 2 : 0);
         face->C() = colour(slice.pixel(column, row));
       }

@@ -17,6 +17,9 @@ namespace meshcomplete {
 namespace host {
 namespace {
 
+/// Of a slice that becomes a layer: two faces each, about 3 GB in all.
+constexpr std::size_t most_layer_pixels = 16000000;
+
 void apply_extract(FilterRun& run) {
   const MeshModel& layer = volume_layer(run);
   const RangeVolume& volume = *volume_of(layer);
@@ -59,9 +62,12 @@ void save_images(FilterRun& run, const RangeVolume& volume, SliceOptions options
   const VoxelBox& box = volume.frame().box;
   options.largest_weight = std::max(largest_weight(volume), std::numeric_limits<float>::min());
   const int first = box.low[options.axis], last = box.high[options.axis];
+  const double share = 1.0 / (last - first + 1);
   VolumeCounts sum;
   for (options.position = first; options.position <= last; ++options.position) {
-    const VolumeSlice slice = make_slice(volume, options, run.progress);
+    const double done = share * (options.position - first);
+    const VolumeSlice slice =
+        make_slice(volume, options, run.progress.part(done, done + share / 2, "writing the slices"));
     save_image(
         slice,
         QDir(folder).filePath(
@@ -69,11 +75,10 @@ void save_images(FilterRun& run, const RangeVolume& volume, SliceOptions options
     sum.seen += slice.counts.seen;
     sum.unseen += slice.counts.unseen;
     sum.empty += slice.counts.empty;
-    run.progress.update(static_cast<double>(options.position - first + 1) / (last - first + 1));
+    run.progress.update(done + share);
   }
   run.log(QString("%1 slices along %2 in %3: %4")
-              .arg(last - first + 1)
-              .arg(axis_name(options.axis), folder, describe(sum)));
+              .arg(QString::number(last - first + 1), axis_name(options.axis), folder, describe(sum)));
 }
 
 void apply_slice(FilterRun& run) {
@@ -88,9 +93,10 @@ void apply_slice(FilterRun& run) {
   const VoxelBox& box = volume.frame().box;
   const int middle = (box.low[options.axis] + box.high[options.axis]) / 2;
   options.position = values.boolean("Middle") ? middle : values.integer("Position");
+  options.most_pixels = most_layer_pixels;
   const VolumeSlice slice = make_slice(volume, options, run.progress);
   const QString name =
-      QString("%1 %2 = %3").arg(layer.label(), axis_name(options.axis)).arg(options.position);
+      QString("%1 %2 = %3").arg(layer.label(), axis_name(options.axis), QString::number(options.position));
   run.log(name + ": " + describe(slice.counts));
   add_slice_layer(run.document, layer, slice, name);
 }

@@ -54,6 +54,15 @@ void check(const VolumeFrame& frame, const SliceOptions& options) {
                                                         "xyz"[options.axis] + " it has the voxels " +
                                                         std::to_string(low) + " to " + std::to_string(high) +
                                                         ".");
+  const auto [across, down] = slice_axes(options.axis);
+  const VoxelIndex size = frame.box.size();
+  if (!options.most_pixels || std::size_t(size[across]) * std::size_t(size[down]) <= *options.most_pixels)
+    return;
+  throw CompletionError("choosing the slice",
+                        "The slice has " + std::to_string(size[across]) + " x " + std::to_string(size[down]) +
+                            " pixels; a layer may have " + std::to_string(*options.most_pixels) +
+                            ". Write images of the slices instead (give a folder), take another axis, or "
+                            "make the volume with larger voxels.");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -24,6 +25,8 @@ struct SliceOptions {
   /// What is white among the weights, above 0; absent: the largest of the volume, which is then looked for
   /// (cost: proportional to the leaves of the weights' grid). For many slices of one volume, look once.
   std::optional<float> largest_weight;
+  /// Slices with more pixels are refused. Absent: none is.
+  std::optional<std::size_t> most_pixels = std::nullopt;
 };
 
 /// One pixel per voxel. Columns go along the first of the two other axes (x, or y where the axis is x), to
@@ -42,7 +45,7 @@ struct VolumeSlice {
 };
 
 /// The slice over the whole volume. CompletionError when the axis or the position is out of range (the
-/// message says the range). Cost: proportional to the pixels.
+/// message says the range), or when it has too many pixels. Cost: proportional to the pixels.
 VolumeSlice make_slice(const RangeVolume& volume, const SliceOptions& options, const Progress& progress);
 
 /// The largest weight of all voxels; 0 where none is seen. Cost: proportional to the leaves of that grid.
