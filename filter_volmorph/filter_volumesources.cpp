@@ -5,6 +5,7 @@
 
 #include "common/core/error.h"
 #include "common/core/stage_clock.h"
+#include "common/host/layers.h"
 #include "common/host/meshlab_version.h"
 #include "common/host/other_layers.h"
 #include "common/host/parameter_blocks.h"
@@ -29,7 +30,9 @@ QVariant edge_of_first_scan(const MeshDocument& document) {
 
 QVariant edge_of_current_layer(const MeshDocument& document) {
   const MeshModel* layer = document.mm();
-  return layer != nullptr && layer->cm.fn > 0 ? median_edge(layer_surface(*layer).mesh) : QVariant();
+  if (layer == nullptr) return QVariant();
+  // Any length does where there are no faces: it is the filter that says so then, and not the parameter.
+  return layer->cm.fn > 0 ? median_edge(layer_surface(*layer).mesh) : layer->cm.bbox.Diag();
 }
 
 std::vector<ParameterDeclaration> size_parameters(QVariant (*default_size)(const MeshDocument&),
@@ -86,8 +89,26 @@ void apply_merge(FilterRun& run) {
   add_volume_layer(run.document, merge.volume, "range volume");
 }
 
+// Layers of which no volume can be made.
+void refuse_other_than_meshes(const MeshModel& layer) {
+  const char* const stage = "reading the mesh";
+  if (volume_of(layer) != nullptr)
+    throw CompletionError(stage, "The layer " + quoted(layer) +
+                                     " holds a range volume, and what it shows is no mesh. Make the layer of "
+                                     "a mesh current; a volume's own surface comes from \"Range Volume: "
+                                     "Extract Surface\".");
+  if (is_slice(layer))
+    throw CompletionError(stage, "The layer " + quoted(layer) +
+                                     " shows a slice of a range volume. Make the layer of a mesh current.");
+  if (layer.cm.fn == 0)
+    throw CompletionError(stage, "The layer " + quoted(layer) +
+                                     " has no faces. Triangulate its points first, for example with "
+                                     "\"Surface Reconstruction: Ball Pivoting\".");
+}
+
 void apply_voxelize(FilterRun& run) {
   const MeshModel& current = *run.document.mm();
+  refuse_other_than_meshes(current);
   VoxelizedMesh made = voxelize_mesh(layer_surface(current).mesh, size_options(run.parameters), run.progress);
   if (made.rim_edges > 0)
     run.log(QString::number(made.rim_edges) + " edges at holes: what lies behind them was not seen");
