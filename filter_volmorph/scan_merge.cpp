@@ -139,8 +139,9 @@ ScanMerge merge_scans(const std::vector<RangeScan>& scans, const ScanMergeOption
 
   std::vector<const TriangleMesh*> surfaces;
   for (const Kept& scan : kept) surfaces.push_back(&scan.mesh);
-  const VolumeFrame frame = choose_frame(surfaces, options.size);
-  const Progress viewing = progress.part(0.1, 0.2, "preparing the scans");
+  const VolumeFrame frame =
+      choose_frame(surfaces, options.size, progress.part(0.1, 0.12, "choosing the volume"));
+  const Progress viewing = progress.part(0.12, 0.2, "preparing the scans");
   for_each(scans.size(), 1, viewing, [&](std::size_t i) {
     add_views(kept[i], figures[i], frame);
     viewing.advance(share);

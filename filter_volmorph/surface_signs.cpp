@@ -6,13 +6,16 @@
 
 namespace meshcomplete {
 
-SurfaceSigns::SurfaceSigns(const TriangleMesh& mesh, const MeshTopology& topology)
+SurfaceSigns::SurfaceSigns(const TriangleMesh& mesh, const MeshTopology& topology, const Progress& progress)
     : mesh_(mesh),
       topology_(topology),
       faces_(mesh.triangles.size(), Vector3::Zero()),
       vertices_(mesh.vertices.size(), Vector3::Zero()),
       vertex_places_(mesh.vertices.size(), SurfacePlace::surface) {
+  constexpr std::size_t between_updates = 4096;
+  const auto faces = static_cast<double>(mesh.triangles.size());
   for (Index f = 0; f < mesh.triangles.size(); ++f) {
+    if (f % between_updates == 0) progress.update(f / faces);
     const Triangle& t = mesh.triangles[f];
     const Vector3* corners[] = {&mesh.vertices[t[0]], &mesh.vertices[t[1]], &mesh.vertices[t[2]]};
     faces_[f] = (*corners[1] - *corners[0]).cross(*corners[2] - *corners[0]).normalized();

@@ -7,6 +7,7 @@
 #include "common/core/closest_point.h"
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/progress.h"
 
 namespace meshcomplete {
 
@@ -18,7 +19,8 @@ enum class SurfacePlace { surface, rim, ambiguous };
 /// the mesh and its topology. Source: Baerentzen and Aanaes 2005.
 class SurfaceSigns {
  public:
-  SurfaceSigns(const TriangleMesh& mesh, const MeshTopology& topology);
+  /// Throws `Cancelled`. Cost: O(faces).
+  SurfaceSigns(const TriangleMesh& mesh, const MeshTopology& topology, const Progress& progress = Progress());
 
   SurfacePlace place(Index triangle, const ClosestPoint& point) const;
   /// Unit, for places on the surface; zero when it has none there.

@@ -20,9 +20,6 @@ constexpr int leaf_side = 8;
 /// is nodes above and lists on the way.
 constexpr double bytes_per_leaf = 7000;
 
-/// Of the blocks that may be near a surface as many turn out to have seen voxels (0.55 to 0.6 on real scans).
-constexpr double seen_share = 0.6;
-
 /// Larger numbers of voxels along an axis are a mistake, and 2^-53 of them is still far below `rounding_pad`.
 constexpr double most_voxels = 1 << 20;
 
@@ -32,6 +29,8 @@ constexpr double cubes_per_square = 1.5;
 
 /// How finely surfaces are looked at to estimate memory: cells along the diagonal.
 constexpr double coarse_cells = 256;
+
+constexpr std::size_t between_checks = 1024;  // triangles; each is up to some ten thousand coarse cells
 
 /// What is suggested instead keeps this part of the limit, since the estimate is one.
 constexpr double suggested_share = 0.8;
@@ -95,16 +94,24 @@ struct Extent {
   double cells = 0;  ///< how many meet a surface
 };
 
-Extent measure(const std::vector<const TriangleMesh*>& surfaces, double least_cell) {
+Extent measure(const std::vector<const TriangleMesh*>& surfaces, double least_cell,
+               const Progress& progress) {
   const Box bounds = bounds_of(surfaces);
   Extent extent;
   extent.low = Vector3(bounds.low[0], bounds.low[1], bounds.low[2]);
   extent.high = Vector3(bounds.high[0], bounds.high[1], bounds.high[2]);
   extent.cell = std::max(least_cell, (extent.high - extent.low).norm() / coarse_cells);
   CellCount count(extent.low, extent.cell);
-  for (const TriangleMesh* mesh : surfaces)
-    for (const Triangle& t : mesh->triangles)
+  double total = 0, done = 0;
+  for (const TriangleMesh* mesh : surfaces) total += static_cast<double>(mesh->triangles.size());
+  for (const TriangleMesh* mesh : surfaces) {
+    for (std::size_t f = 0; f < mesh->triangles.size(); ++f) {
+      if (f % between_checks == 0) progress.update((done + static_cast<double>(f)) / total);
+      const Triangle& t = mesh->triangles[f];
       count.add(mesh->vertices[t[0]], mesh->vertices[t[1]], mesh->vertices[t[2]]);
+    }
+    done += static_cast<double>(mesh->triangles.size());
+  }
   extent.cells = static_cast<double>(count.count());
   return extent;
 }
@@ -123,17 +130,37 @@ double estimate(const Extent& extent, const VolumeSizeOptions& options) {
   return bytes_per_leaf * std::min(leaves, all);
 }
 
+/// Rounded up to two digits.
+double two_digits_up(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::ceil(x / unit) * unit;
+}
+
+double longest_side(const Extent& extent, const VolumeSizeOptions& options, int* axis = nullptr) {
+  int any = 0;
+  return box_size(extent, options).maxCoeff(axis != nullptr ? axis : &any) / options.voxel_size;
+}
+
+[[noreturn]] void throw_too_long(const Extent& extent, const VolumeSizeOptions& options, std::size_t surfaces,
+                                 double fitting) {
+  int axis = 0;
+  const double voxels = longest_side(extent, options, &axis);
+  throw CompletionError(
+      "choosing the volume",
+      (surfaces > 1 ? "The visible layers span " : "The mesh spans ") + number(voxels) + " voxels of " +
+          number(options.voxel_size) + " along " + "xyz"[axis] + "; at most " +
+          std::to_string(static_cast<long>(most_voxels)) + " are possible. " +
+          (surfaces > 1
+               ? "Are the layers aligned, in the same unit, and without vertices far away?"
+               : "Is the voxel size in the unit of the mesh, and has the mesh no vertices far away?") +
+          " Voxels of " + number(fitting) + " would fit.");
+}
+
 [[noreturn]] void throw_too_large(const VolumeSizeOptions& options, double bytes, double fitting) {
   throw CompletionError("choosing the volume",
                         "Voxels of " + number(options.voxel_size) + " would need about " + gigabytes(bytes) +
                             " of memory; " + gigabytes(options.max_memory) + " are allowed. Voxels of " +
                             number(fitting) + " would fit.");
-}
-
-/// Rounded up to two digits.
-double two_digits_up(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
-  return std::ceil(x / unit) * unit;
 }
 
 }  // namespace
@@ -152,12 +179,12 @@ double ramp_of(const VolumeSizeOptions& options) {
   return options.ramp.value_or(default_ramp * options.voxel_size);
 }
 
-VolumeFrame choose_frame(const std::vector<const TriangleMesh*>& surfaces, const VolumeSizeOptions& options) {
+VolumeFrame choose_frame(const std::vector<const TriangleMesh*>& surfaces, const VolumeSizeOptions& options,
+                         const Progress& progress) {
   check_options(options);
-  const Extent extent = measure(surfaces, leaf_side * options.voxel_size);
+  const Extent extent = measure(surfaces, leaf_side * options.voxel_size, progress);
   const auto fits = [&](const VolumeSizeOptions& tried, double share) {
-    return box_size(extent, tried).maxCoeff() / tried.voxel_size < most_voxels &&
-           estimate(extent, tried) <= share * options.max_memory;
+    return longest_side(extent, tried) < most_voxels && estimate(extent, tried) <= share * options.max_memory;
   };
   if (!fits(options, 1)) {
     VolumeSizeOptions larger = options;
@@ -166,7 +193,10 @@ VolumeFrame choose_frame(const std::vector<const TriangleMesh*>& surfaces, const
       larger.voxel_size *= step;
       if (larger.ramp) larger.ramp = std::max(*larger.ramp, larger.voxel_size);
     }
-    throw_too_large(options, estimate(extent, options), two_digits_up(larger.voxel_size));
+    const double fitting = two_digits_up(larger.voxel_size);
+    if (!(longest_side(extent, options) < most_voxels))
+      throw_too_long(extent, options, surfaces.size(), fitting);
+    throw_too_large(options, estimate(extent, options), fitting);
   }
   VolumeFrame frame;
   frame.voxel_size = options.voxel_size;
@@ -180,7 +210,7 @@ VolumeFrame choose_frame(const std::vector<const TriangleMesh*>& surfaces, const
   return frame;
 }
 
-void check_memory(std::size_t near_blocks, const VolumeSizeOptions& options) {
+void check_memory(std::size_t near_blocks, const VolumeSizeOptions& options, double seen_share) {
   const double bytes = bytes_per_leaf * seen_share * static_cast<double>(near_blocks);
   if (bytes <= options.max_memory) return;
   const double share = bytes / (suggested_share * options.max_memory);

@@ -12,6 +12,8 @@
 namespace meshcomplete {
 namespace {
 
+constexpr std::size_t between_checks = 1024;  // leaves or cubes
+
 template <class Grid>
 using Leaf = typename Grid::TreeType::LeafNodeType;
 
@@ -19,8 +21,11 @@ template <class Grid>
 struct Leaves {
   std::vector<std::unique_ptr<Leaf<Grid>>> leaves;
 
-  void hand_over(Grid& grid) {
-    for (auto& leaf : leaves) grid.tree().addLeaf(leaf.release());
+  void hand_over(Grid& grid, const Progress& progress) {
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      if (i % between_checks == 0) progress.check();
+      grid.tree().addLeaf(leaves[i].release());
+    }
     leaves.clear();
   }
 };
@@ -91,17 +96,24 @@ void VoxelBlocks::add_empty(const VoxelIndex& low, int side) {
   parts_->empty.push_back(to_coord_box(box));
 }
 
-RangeVolume VoxelBlocks::finish() {
+RangeVolume VoxelBlocks::finish(const Progress& progress) {
   auto state = openvdb::BoolGrid::create(true);
   auto distance = openvdb::FloatGrid::create(static_cast<float>(frame_.ramp));
   auto weight = openvdb::FloatGrid::create(0);
   auto normal = openvdb::Int32Grid::create(0);
   state->tree().sparseFill(to_coord_box(frame_.box), false, false);
-  for (const openvdb::CoordBBox& box : parts_->empty) state->tree().sparseFill(box, true, false);
-  parts_->state.hand_over(*state);
-  parts_->distance.hand_over(*distance);
-  parts_->weight.hand_over(*weight);
-  parts_->normal.hand_over(*normal);
+  for (std::size_t i = 0; i < parts_->empty.size(); ++i) {
+    if (i % between_checks == 0) progress.check();
+    state->tree().sparseFill(parts_->empty[i], true, false);
+  }
+  progress.update(0.2);
+  parts_->state.hand_over(*state, progress);
+  progress.update(0.4);
+  parts_->distance.hand_over(*distance, progress);
+  progress.update(0.6);
+  parts_->weight.hand_over(*weight, progress);
+  progress.update(0.8);
+  parts_->normal.hand_over(*normal, progress);
   openvdb::tools::prune(state->tree());
   VolumeGrids grids{state, distance, weight, normal};
   return RangeVolume(frame_, std::make_shared<const VolumeGrids>(std::move(grids)));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/core/progress.h"
 #include "filter_volmorph/range_volume.h"
 
 namespace meshcomplete {
@@ -35,8 +36,8 @@ class VoxelBlocks {
   /// A cube that is empty; what is outside the volume's box is left out. Safe from many threads.
   void add_empty(const VoxelIndex& low, int side);
 
-  /// The volume. This object is of no use afterwards.
-  RangeVolume finish();
+  /// The volume. This object is of no use afterwards. Throws `Cancelled`.
+  RangeVolume finish(const Progress& progress = Progress());
 
  private:
   struct Parts;

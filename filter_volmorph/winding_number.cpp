@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t faces_in_leaf = 8;
 constexpr std::size_t fan_out = 4;
+constexpr std::size_t between_checks = 4096;  // faces or half-edges
 
 /// Nodes farther than so many of their radii are one dipole. The terms left out are smaller than that one by
 /// the square of this, and of both signs over a mesh: the sum stays well within `largest_error`.
@@ -26,11 +27,25 @@ double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 }  // namespace
 
-WindingNumber::WindingNumber(const TriangleMesh& mesh, const MeshTopology& topology) : mesh_(mesh) {
+WindingNumber::WindingNumber(const TriangleMesh& mesh, const MeshTopology& topology, const Progress& progress)
+    : mesh_(mesh) {
   std::vector<Box> boxes;
-  for (const Triangle& t : mesh.triangles)
+  boxes.reserve(mesh.triangles.size());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (f % between_checks == 0) progress.check();
+    const Triangle& t = mesh.triangles[f];
     boxes.push_back(bounding_box(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
+  }
+  progress.update(0.1);
   order_ = spatial_order(boxes);
+  progress.update(0.4);
+  build_nodes(boxes, progress);
+  progress.update(0.8);
+  build_rims(topology, progress);
+  progress.update(1);
+}
+
+void WindingNumber::build_nodes(const std::vector<Box>& boxes, const Progress& progress) {
   const auto finish = [](Node& node) {
     if (node.area > 0) node.middle /= node.area;
     for (int k = 0; k < 8; ++k) {
@@ -42,8 +57,9 @@ WindingNumber::WindingNumber(const TriangleMesh& mesh, const MeshTopology& topol
   };
   std::vector<Node> nodes((order_.size() + faces_in_leaf - 1) / faces_in_leaf);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    const Triangle& t = mesh.triangles[order_[i]];
-    const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (i % between_checks == 0) progress.check();
+    const Triangle& t = mesh_.triangles[order_[i]];
+    const Vector3 &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
     const Vector3 normal = (b - a).cross(c - a) / 2;
     if (!normal.allFinite()) continue;
     Node& node = nodes[i / faces_in_leaf];
@@ -67,16 +83,15 @@ WindingNumber::WindingNumber(const TriangleMesh& mesh, const MeshTopology& topol
     for (Node& node : coarse) finish(node);
     levels_.push_back(std::move(coarse));
   }
-
-  build_rims(topology);
 }
 
-void WindingNumber::build_rims(const MeshTopology& topology) {
+void WindingNumber::build_rims(const MeshTopology& topology, const Progress& progress) {
   std::vector<Rim> rims;
   std::vector<Box> boxes;
   const auto half_edges = static_cast<Index>(topology.opposite.size());
   const auto start = [&](Index h) { return mesh_.triangles[h / 3][h % 3]; };
   for (Index h = 0; h < half_edges; ++h) {
+    if (h % between_checks == 0) progress.check();
     if (topology.opposite[h] < half_edges && start(topology.opposite[h]) != start(h)) continue;
     const Vector3 &a = mesh_.vertices[start(h)], &b = mesh_.vertices[mesh_.triangles[h / 3][(h % 3 + 1) % 3]];
     boxes.push_back(bounding_box(a, b, b));

@@ -6,6 +6,7 @@
 #include "common/core/box_tree.h"
 #include "common/core/mesh.h"
 #include "common/core/mesh_topology.h"
+#include "common/core/progress.h"
 
 namespace meshcomplete {
 
@@ -16,8 +17,10 @@ namespace meshcomplete {
 /// Immutable, safe to ask from many threads.
 class WindingNumber {
  public:
-  /// Refers to the mesh and its topology, which must outlive it. Cost: O(faces log faces).
-  WindingNumber(const TriangleMesh& mesh, const MeshTopology& topology);
+  /// Refers to the mesh and its topology, which must outlive it. Throws `Cancelled`. Cost: O(faces log
+  /// faces).
+  WindingNumber(const TriangleMesh& mesh, const MeshTopology& topology,
+                const Progress& progress = Progress());
 
   /// Within about `largest_error`. Cost: O(log faces) away from the surface.
   double at(const Vector3& point) const;
@@ -49,7 +52,8 @@ class WindingNumber {
 
   double at(const Vector3& point, std::size_t level, std::size_t node) const;
   double steepest(const Vector3& point, double radius, std::size_t level, std::size_t rim) const;
-  void build_rims(const MeshTopology& topology);
+  void build_nodes(const std::vector<Box>& boxes, const Progress& progress);
+  void build_rims(const MeshTopology& topology, const Progress& progress);
 
   const TriangleMesh& mesh_;
   std::vector<Index> order_;               ///< faces, neighbours in space after another
