@@ -21,21 +21,29 @@ namespace meshcomplete {
 namespace {
 
 constexpr std::size_t blocks_at_once = 16;
+constexpr std::size_t between_checks = 4096;  // vertices or triangles
 
-TriangleMesh in_voxels(const TriangleMesh& mesh, const VolumeFrame& frame) {
-  TriangleMesh result;
-  for (const Vector3& vertex : mesh.vertices) result.vertices.push_back(frame.voxel(vertex));
-  result.triangles = mesh.triangles;
-  return result;
+/// Coordinates of up to 2^20 voxels, and distances between them, are rounded by far less voxels than this.
+constexpr double rounding_pad = 1e-6;
+
+TriangleMesh in_voxels(TriangleMesh mesh, const VolumeFrame& frame, const Progress& progress) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (v % between_checks == 0) progress.check();
+    mesh.vertices[v] = frame.voxel(mesh.vertices[v]);
+  }
+  return mesh;
 }
 
 /// Without faces that are no triangles. Those with three vertices on a line stay: without them their
 /// neighbours would seem to end there.
-TriangleMesh usable(const TriangleMesh& mesh) {
+TriangleMesh usable(const TriangleMesh& mesh, const Progress& progress) {
   TriangleMesh result;
   result.vertices = mesh.vertices;
+  result.triangles.reserve(mesh.triangles.size());
   bool area = false;
-  for (const Triangle& t : mesh.triangles) {
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (f % between_checks == 0) progress.check();
+    const Triangle& t = mesh.triangles[f];
     const Vector3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (!a.allFinite() || !b.allFinite() || !c.allFinite()) continue;
@@ -63,34 +71,37 @@ using NearestPoints = std::array<Nearest, VoxelBlock::count>;
 
 class Voxelizer {
  public:
-  Voxelizer(const TriangleMesh& mesh, const VolumeFrame& frame)
+  Voxelizer(const TriangleMesh& mesh, const VolumeFrame& frame, const Progress& progress)
       : mesh_(mesh),
         frame_(frame),
         ramp_(frame.ramp / frame.voxel_size),
-        topology_(build_topology(mesh)),
+        topology_(build_topology(mesh, progress.part(0, 0.3, "preparing the mesh"))),
         triangles_(mesh),
-        winding_(mesh, topology_),
-        signs_(mesh, topology_),
+        winding_(mesh, topology_, progress.part(0.3, 0.7, "preparing the mesh")),
+        signs_(mesh, topology_, progress.part(0.7, 1, "preparing the mesh")),
         blocks_(frame) {}
 
   std::size_t rim_edges() const { return topology_.boundary_half_edges.size(); }
 
   RangeVolume run(const VolumeSizeOptions& size, const Progress& progress) {
-    const Progress descent = progress.part(0, 0.2, "finding the blocks near the surface");
+    const Progress descent = progress.part(0, 0.15, "finding the blocks near the surface");
     std::vector<Block> blocks = descend_to_blocks(
         frame_.box, Block(),
         [&](std::vector<Block>& all, std::size_t begin, std::size_t end, int side,
             std::vector<char>& undecided) {
           for (std::size_t i = begin; i < end; ++i) {
             descent.check();
-            undecided[i] = !decide_cube(all[i], side);
+            undecided[i] = !decide_cube(all[i], side, descent);
           }
         },
         descent);
+    // Nearly all of them have seen voxels, since triangles were looked at and not only their boxes.
+    constexpr double seen_share = 1;
     check_memory(static_cast<std::size_t>(
                      std::count_if(blocks.begin(), blocks.end(), [](const Block& b) { return b.near; })),
-                 size);
-    const Progress filling = progress.part(0.2, 0.95, "measuring distances");
+                 size, seen_share);
+
+    const Progress filling = progress.part(0.15, 0.95, "measuring distances");
     for_ranges(blocks.size(), blocks_at_once, filling, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         blocks_.add(fill(blocks[i], filling));
@@ -98,7 +109,7 @@ class Voxelizer {
       }
     });
     blocks = {};
-    RangeVolume volume = blocks_.finish();
+    RangeVolume volume = blocks_.finish(progress.part(0.95, 1, "making the volume"));
     progress.update(1);
     return volume;
   }
@@ -114,6 +125,33 @@ class Voxelizer {
     return box;
   }
 
+  /// Calls `visit(triangle)` until it returns false, for the triangles that may be within the ramp of a voxel
+  /// middle of a cube.
+  template <class Visit>
+  void visit_near(const VoxelIndex& low, int side, const Progress& progress, Visit&& visit) const {
+    constexpr std::size_t triangles_between_checks = 1024;
+    const double half = (side - 1) / 2.0;
+    const Vector3 middle = low.cast<double>().array() + half;
+    std::size_t seen = 0;
+    triangles_.visit(reach(low, side), [&](Index triangle) {
+      if (++seen % triangles_between_checks == 0) progress.check();
+      return beyond_ramp(triangle, middle, half) || visit(triangle);
+    });
+  }
+
+  /// Whether a triangle is farther than the ramp from all of a cube: their projections onto the way from the
+  /// cube's middle to the triangle's nearest point are. (Projections onto any line would prove it, so that it
+  /// does not matter how well that point is known; on this line they are far apart where boxes of large
+  /// tilted triangles are not.)
+  bool beyond_ramp(Index triangle, const Vector3& middle, double half) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    const Vector3 a = mesh_.vertices[t[0]] - middle, b = mesh_.vertices[t[1]] - middle,
+                  c = mesh_.vertices[t[2]] - middle;
+    const Vector3 way = closest_point(Vector3::Zero(), a, b, c).position;
+    const double triangle_low = std::min({way.dot(a), way.dot(b), way.dot(c)});
+    return triangle_low > half * way.lpNorm<1>() + (ramp_ + rounding_pad) * way.norm();
+  }
+
   /// Whether all points of a ball without surface are inside, or all outside; nothing when it is not sure.
   std::optional<bool> inside(const Vector3& middle, double radius, double way) const {
     const double change = winding_.steepest(middle, radius);
@@ -124,9 +162,9 @@ class Voxelizer {
   }
 
   /// Whether all of a cube is on one side of the surface and beyond the ramp.
-  bool decide_cube(Block& cube, int side) {
+  bool decide_cube(Block& cube, int side, const Progress& progress) {
     cube.near = false;
-    triangles_.visit(reach(cube.low, side), [&](Index) {
+    visit_near(cube.low, side, progress, [&](Index) {
       cube.near = true;
       return false;
     });
@@ -174,9 +212,7 @@ class Voxelizer {
     block.low = source.low;
     NearestPoints nearest;
     if (source.near) {
-      std::size_t seen = 0;
-      triangles_.visit(reach(source.low, VoxelBlock::side), [&](Index triangle) {
-        if (++seen % 1024 == 0) progress.check();
+      visit_near(source.low, VoxelBlock::side, progress, [&](Index triangle) {
         measure(triangle, source.low, nearest);
         return true;
       });
@@ -263,13 +299,15 @@ VoxelizedMesh voxelize_mesh(const TriangleMesh& mesh, const VolumeSizeOptions& o
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   check_options(options);
-  const TriangleMesh solid = usable(mesh);
-  const VolumeFrame frame = choose_frame({&solid}, options);
-  progress.check();
-  const TriangleMesh in_frame = in_voxels(solid, frame);
-  Voxelizer voxelizer(in_frame, frame);
+  const Progress preparing = progress.part(0, 0.2, "preparing the mesh");
+  TriangleMesh solid = usable(mesh, preparing);
+  preparing.update(0.1);
+  const VolumeFrame frame = choose_frame({&solid}, options, preparing.part(0.1, 0.3, "choosing the volume"));
+  const TriangleMesh in_frame = in_voxels(std::move(solid), frame, preparing);
+  Voxelizer voxelizer(in_frame, frame, preparing.part(0.3, 1, "preparing the mesh"));
   const double prepared = seconds();
-  VoxelizedMesh result{voxelizer.run(options, progress), {}, voxelizer.rim_edges(), {}};
+  VoxelizedMesh result{
+      voxelizer.run(options, progress.part(0.2, 1, "measuring distances")), {}, voxelizer.rim_edges(), {}};
   result.counts = result.volume.counts();
   result.stage_seconds = {{"preparing the mesh", prepared}, {"measuring distances", seconds() - prepared}};
   return result;
