@@ -35,62 +35,72 @@ std::pair<BlockBits, BlockBits> empty_and_not_seen(const openvdb::BoolGrid::Cons
   return {empty, not_seen};
 }
 
-struct Block {
-  Coord lowest;
-  BlockBits stored;
-};
+/// Which voxels of a block have a stored distance.
+BlockBits stored_bits(const openvdb::FloatGrid::ConstAccessor& distances, const Coord& lowest) {
+  BlockBits bits;
+  if (const auto* leaf = distances.probeConstLeaf(lowest)) {
+    for (int x = 0; x < block_size; ++x) bits[x] = leaf->valueMask().getWord<std::uint64_t>(x);
+  } else {
+    bits.fill(distances.isValueOn(lowest) ? all_bits : 0);
+  }
+  return bits;
+}
 
 /// The blocks with stored distances.
-std::vector<Block> blocks_of(const openvdb::FloatTree& distances) {
-  std::vector<Block> blocks;
-  for (auto leaf = distances.cbeginLeaf(); leaf; ++leaf) {
-    Block block{leaf->origin(), {}};
-    for (int x = 0; x < block_size; ++x) block.stored[x] = leaf->valueMask().getWord<std::uint64_t>(x);
-    blocks.push_back(block);
-  }
+std::vector<Coord> blocks_of(const openvdb::FloatTree& distances) {
+  std::vector<Coord> blocks;
+  for (auto leaf = distances.cbeginLeaf(); leaf; ++leaf) blocks.push_back(leaf->origin());
   auto tile = distances.cbeginValueOn();
   tile.setMaxDepth(openvdb::FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile) {
     const openvdb::CoordBBox box = tile.getBoundingBox();
-    Block block{{}, {}};
-    block.stored.fill(all_bits);
     for (int x = box.min().x(); x <= box.max().x(); x += block_size)
       for (int y = box.min().y(); y <= box.max().y(); y += block_size)
-        for (int z = box.min().z(); z <= box.max().z(); z += block_size) {
-          block.lowest = Coord(x, y, z);
-          blocks.push_back(block);
-        }
+        for (int z = box.min().z(); z <= box.max().z(); z += block_size) blocks.emplace_back(x, y, z);
   }
   return blocks;
 }
 
 }  // namespace
 
-void reset_filler_distances(const VolumeGrids& before, VolumeGrids& grids, const Progress& progress) {
-  const auto old_states = before.state->getConstAccessor(), new_states = grids.state->getConstAccessor();
-  std::vector<Block> changed;
-  std::size_t looked_at = 0;
-  for (const Block& block : blocks_of(grids.distance->tree())) {
-    if (++looked_at % blocks_between_checks == 0) progress.check();
-    const auto was = empty_and_not_seen(old_states, block.lowest);
-    const auto is = empty_and_not_seen(new_states, block.lowest);
-    Block change = block;
-    for (int x = 0; x < block_size; ++x)
-      change.stored[x] &= was.second[x] & is.second[x] & (was.first[x] ^ is.first[x]);
-    if (any_bit(change.stored)) changed.push_back(change);
+void reset_filler_distances(VolumeGrids& grids, const std::vector<StateChange>& changes,
+                            const Progress& progress) {
+  const auto distances = grids.distance->getConstAccessor();
+  std::vector<StateChange> stored;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (i % blocks_between_checks == 0) progress.check();
+    const StateChange change{changes[i].lowest,
+                             changes[i].bits & stored_bits(distances, to_coord(changes[i].lowest))};
+    if (any_bit(change.bits)) stored.push_back(change);
   }
   progress.update(0.2);
-  if (changed.empty()) return;
+  if (stored.empty()) return;
   const openvdb::FloatGrid::Ptr copy = grids.distance->deepCopy();
   progress.update(0.8);
-  for (const Block& change : changed) {
-    auto* leaf = copy->tree().touchLeaf(change.lowest);
-    for_each_bit(change.stored, [&](int x, int y, int z) {
-      leaf->setValueOff(change.lowest.offsetBy(x, y, z), copy->background());
+  for (const StateChange& change : stored) {
+    const Coord lowest = to_coord(change.lowest);
+    auto* leaf = copy->tree().touchLeaf(lowest);
+    for_each_bit(change.bits, [&](int x, int y, int z) {
+      leaf->setValueOff(lowest.offsetBy(x, y, z), copy->background());
     });
   }
   openvdb::tools::pruneInactive(copy->tree());
   grids.distance = copy;
+}
+
+void reset_filler_distances(const VolumeGrids& before, VolumeGrids& grids, const Progress& progress) {
+  const auto old_states = before.state->getConstAccessor(), new_states = grids.state->getConstAccessor();
+  std::vector<StateChange> changes;
+  std::size_t looked_at = 0;
+  for (const Coord& lowest : blocks_of(grids.distance->tree())) {
+    if (++looked_at % blocks_between_checks == 0) progress.check();
+    const auto was = empty_and_not_seen(old_states, lowest);
+    const auto is = empty_and_not_seen(new_states, lowest);
+    StateChange change{to_voxel(lowest), was.second & is.second};
+    for (int x = 0; x < block_size; ++x) change.bits[x] &= was.first[x] ^ is.first[x];
+    if (any_bit(change.bits)) changes.push_back(change);
+  }
+  reset_filler_distances(grids, changes, progress.part(0.2, 1, "forgetting distances"));
 }
 
 }  // namespace meshcomplete

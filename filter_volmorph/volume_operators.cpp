@@ -206,25 +206,19 @@ std::vector<Coord> blocks_at_boundaries(const RangeVolume& volume, const CoordBB
   return blocks.blocks_in(box);
 }
 
-/// Voxels of a block that change.
-struct BlockChange {
-  Coord lowest;
-  BlockBits bits;
-};
-
-std::uint64_t count_voxels(const std::vector<BlockChange>& changes) {
+std::uint64_t count_voxels(const std::vector<StateChange>& changes) {
   std::uint64_t count = 0;
-  for (const BlockChange& change : changes) count += count_bits(change.bits);
+  for (const StateChange& change : changes) count += count_bits(change.bits);
   return count;
 }
 
 /// The voxels of the box in the state `from` that have a 6-neighbour in the state `to`.
-std::vector<BlockChange> voxels_beside(const RangeVolume& volume, const VoxelBox& box, VoxelState from,
+std::vector<StateChange> voxels_beside(const RangeVolume& volume, const VoxelBox& box, VoxelState from,
                                        VoxelState to, const Progress& progress) {
   const VoxelBox& all = volume.frame().box;
   const auto blocks =
       blocks_at_boundaries(volume, to_coord_box(box), from, progress.part(0, 0.3, "Finding boundaries"));
-  const auto work = [&](std::size_t begin, std::size_t end, std::vector<BlockChange>& changes) {
+  const auto work = [&](std::size_t begin, std::size_t end, std::vector<StateChange>& changes) {
     const StateReader states = volume.grids().state->getConstAccessor();
     // Outside the volume the grid says "empty".
     const auto bits = [&](const Coord& lowest) {
@@ -241,19 +235,19 @@ std::vector<BlockChange> voxels_beside(const RangeVolume& volume, const VoxelBox
         block.beside[axis][1] = bits(shifted(lowest, axis, block_size));
       }
       const BlockBits change = own & bits_beside(block);
-      if (any_bit(change)) changes.push_back({lowest, change});
+      if (any_bit(change)) changes.push_back({to_voxel(lowest), change});
     }
   };
-  return for_blocks<BlockChange>(blocks, progress.part(0.3, 1, "Comparing neighbours"), work);
+  return for_blocks<StateChange>(blocks, progress.part(0.3, 1, "Comparing neighbours"), work);
 }
 
 /// The states with all changed voxels in the other state of unseen and empty.
 openvdb::BoolGrid::ConstPtr changed_states(const openvdb::BoolGrid& states,
-                                           const std::vector<BlockChange>& changes,
+                                           const std::vector<StateChange>& changes,
                                            const Progress& progress) {
   const openvdb::BoolGrid::Ptr copy = states.deepCopy();
-  for (const BlockChange& change : changes) {
-    std::uint64_t* empty = copy->tree().touchLeaf(change.lowest)->buffer().data();
+  for (const StateChange& change : changes) {
+    std::uint64_t* empty = copy->tree().touchLeaf(to_coord(change.lowest))->buffer().data();
     for (int x = 0; x < block_size; ++x) empty[x] ^= change.bits[x];
   }
   progress.update(0.5);
@@ -270,7 +264,7 @@ OperatorResult change_states(const RangeVolume& volume, const VoxelBox& given, V
   if (changes.empty()) return {volume, 0};
   VolumeGrids grids = volume.grids();
   grids.state = changed_states(*grids.state, changes, progress.part(0.7, 0.9, "Changing states"));
-  reset_filler_distances(volume.grids(), grids, progress.part(0.9, 1, "Changing states"));
+  reset_filler_distances(grids, changes, progress.part(0.9, 1, "Changing states"));
   progress.update(1);
   return {RangeVolume(volume.frame(), std::make_shared<const VolumeGrids>(std::move(grids))),
           count_voxels(changes)};
