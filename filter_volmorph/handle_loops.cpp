@@ -21,22 +21,35 @@ void add(Sum& sum, const Sum& other) {
   sum.swap(result);
 }
 
-// Whether two sums have an odd number of loops in common.
-bool odd_overlap(const Sum& a, const Sum& b) {
-  bool odd = false;
-  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-    if (*i == *j) odd = !odd;
-    const bool step_i = *i <= *j, step_j = *j <= *i;
-    i += step_i;
-    j += step_j;
+// A sum of loops that is compared with many others.
+class MarkedSum {
+ public:
+  MarkedSum(std::vector<char>& marks, const Sum& sum) : marks_(marks), sum_(sum) {
+    for (const Index loop : sum_) marks_[loop] = 1;
   }
-  return odd;
-}
+  MarkedSum(const MarkedSum&) = delete;
+  MarkedSum& operator=(const MarkedSum&) = delete;
+  ~MarkedSum() {
+    for (const Index loop : sum_) marks_[loop] = 0;
+  }
+
+  // Whether it has an odd number of loops in common with the other.
+  bool odd_overlap(const Sum& other) const {
+    char odd = 0;
+    for (const Index loop : other) odd ^= marks_[loop];
+    return odd != 0;
+  }
+
+ private:
+  std::vector<char>& marks_;  // of all loops
+  const Sum& sum_;
+};
 
 class HandleFinder {
  public:
-  HandleFinder(const TriangleMesh& mesh, const CappedSurface& surface, const std::vector<SurfaceLoop>& basis)
-      : surface_(surface), shortener_(mesh, surface), basis_(basis.size()), sums_(basis.size()) {
+  HandleFinder(const CappedSurface& surface, const std::vector<double>& lengths,
+               const std::vector<SurfaceLoop>& basis)
+      : surface_(surface), shortener_(surface, lengths), basis_(basis.size()), sums_(basis.size()) {
     for (const SurfaceLoop& loop : basis) insert(loop);
     for (Index i = 0; i < basis_; ++i) sums_[i] = {i};
   }
@@ -44,7 +57,7 @@ class HandleFinder {
   std::vector<SurfaceLoop> find(const Progress& progress) {
     for (Index i = 0; i < basis_; ++i) {
       progress.update(0.1 * double(i) / double(basis_));
-      crossings_.push_back(crossed_by(loops_[i]));
+      crossings_.push_back(crossed_by(beside_[i]));
     }
     std::vector<SurfaceLoop> found;
     for (Index first = 0; first < basis_; ++first) {
@@ -69,12 +82,14 @@ class HandleFinder {
   void insert(const SurfaceLoop& loop) {
     for (const Index h : loop.half_edges) at_edge_[edge_of(h)].push_back(Index(loops_.size()));
     loops_.push_back(loop);
+    beside_.push_back(edges_beside(surface_, loop));
+    marks_.push_back(0);
   }
 
-  // The loops that a loop crosses an odd number of times, as they were at first.
-  Sum crossed_by(const SurfaceLoop& loop) const {
+  // The loops that a loop, given by what is beside it, crosses an odd number of times, as they were at first.
+  Sum crossed_by(const std::vector<Index>& beside) const {
     Sum met;
-    for (const Index h : edges_beside(surface_, loop)) {
+    for (const Index h : beside) {
       const auto at = at_edge_.find(edge_of(h));
       if (at != at_edge_.end()) met.insert(met.end(), at->second.begin(), at->second.end());
     }
@@ -89,10 +104,7 @@ class HandleFinder {
 
   std::vector<Index> edges_beside_all(const Sum& sum) const {
     std::vector<Index> edges;
-    for (const Index loop : sum) {
-      const std::vector<Index> some = edges_beside(surface_, loops_[loop]);
-      edges.insert(edges.end(), some.begin(), some.end());
-    }
+    for (const Index loop : sum) edges.insert(edges.end(), beside_[loop].begin(), beside_[loop].end());
     return edges;
   }
 
@@ -100,14 +112,16 @@ class HandleFinder {
     return shortener_.shortened(loops_[loop], edges_beside_all(across), progress);
   }
 
-  // Inserts a loop and returns it led round the handles found.
-  Sum led_round_others(const SurfaceLoop& loop) {
-    const Sum crossed = crossed_by(loop);
+  // Inserts a loop that crosses others, as they were, and returns it led round the handles found.
+  Sum led_round_others(const SurfaceLoop& loop, const Sum& crossed) {
     Sum sum = {Index(loops_.size())};
-    for (const Pair& before : pairs_) {
-      const bool with_loop = odd_overlap(crossed, before.loop);
-      if (odd_overlap(crossed, before.partner)) add(sum, before.loop);
-      if (with_loop) add(sum, before.partner);
+    {
+      const MarkedSum marked(marks_, crossed);
+      for (const Pair& before : pairs_) {
+        const bool with_loop = marked.odd_overlap(before.loop);
+        if (marked.odd_overlap(before.partner)) add(sum, before.loop);
+        if (with_loop) add(sum, before.partner);
+      }
     }
     insert(loop);
     return sum;
@@ -121,11 +135,12 @@ class HandleFinder {
     const bool a_is_short = a.length <= b.length;
     const SurfaceLoop loop = a_is_short ? a : b;
     Pair pair;
-    pair.loop = led_round_others(loop);
+    pair.loop = led_round_others(loop, crossed_by(edges_beside(surface_, loop)));
     const SurfaceLoop partner = shortened(a_is_short ? second : first, pair.loop, progress);
-    const Sum across_loop = basis_across(crossed_by(loop)),
-              across_partner = basis_across(crossed_by(partner));
-    pair.partner = led_round_others(partner);
+    const Sum crossed_by_partner = crossed_by(edges_beside(surface_, partner));
+    const Sum across_loop = basis_across(crossed_by(beside_.back())),
+              across_partner = basis_across(crossed_by_partner);
+    pair.partner = led_round_others(partner, crossed_by_partner);
     for (const Index i : across_loop) {
       add(crossings_[i], across_partner);
       add(sums_[i], pair.partner);
@@ -139,17 +154,20 @@ class HandleFinder {
   }
 
   // Those of the basis, as they are now, that a loop crosses; `crossed`: those that it crosses as they were.
-  Sum basis_across(const Sum& crossed) const {
+  Sum basis_across(const Sum& crossed) {
     Sum across;
+    const MarkedSum marked(marks_, crossed);
     for (Index i = 0; i < basis_; ++i)
-      if (odd_overlap(crossed, sums_[i])) across.push_back(i);
+      if (marked.odd_overlap(sums_[i])) across.push_back(i);
     return across;
   }
 
   const CappedSurface& surface_;
   LoopShortener shortener_;
-  std::size_t basis_;               // loops at first
-  std::vector<SurfaceLoop> loops_;  // the basis, then those of the handles found
+  std::size_t basis_;                       // loops at first
+  std::vector<SurfaceLoop> loops_;          // the basis, then those of the handles found
+  std::vector<std::vector<Index>> beside_;  // each of them: `edges_beside`
+  std::vector<char> marks_;                 // each of them: for `MarkedSum`, else 0
   std::unordered_map<Index, Sum> at_edge_;
   std::vector<Sum> sums_;       // what each loop of the basis is now, led round the handles found
   std::vector<Sum> crossings_;  // with which others of the basis, as they are now, each crosses
@@ -158,9 +176,9 @@ class HandleFinder {
 
 }  // namespace
 
-std::vector<SurfaceLoop> loops_of_handles(const TriangleMesh& mesh, const CappedSurface& surface,
+std::vector<SurfaceLoop> loops_of_handles(const CappedSurface& surface, const std::vector<double>& lengths,
                                           const std::vector<SurfaceLoop>& basis, const Progress& progress) {
-  return HandleFinder(mesh, surface, basis).find(progress);
+  return HandleFinder(surface, lengths, basis).find(progress);
 }
 
 }  // namespace meshcomplete

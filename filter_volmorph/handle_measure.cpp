@@ -32,8 +32,9 @@ HandleReport measure_handles(const TriangleMesh& mesh, const Progress& progress)
   report.handles.emplace();
   if (*report.statistics.genus > 0) {
     const CappedSurface surface = cap_surface(mesh, topology, progress.part(0.3, 0.4, stage));
-    const std::vector<SurfaceLoop> loops = loop_basis(mesh, surface, progress.part(0.4, 0.7, stage));
-    for (const SurfaceLoop& loop : loops_of_handles(mesh, surface, loops, progress.part(0.7, 1, stage)))
+    const std::vector<double> lengths = edge_lengths(mesh, surface);
+    const std::vector<SurfaceLoop> loops = loop_basis(surface, lengths, progress.part(0.4, 0.7, stage));
+    for (const SurfaceLoop& loop : loops_of_handles(surface, lengths, loops, progress.part(0.7, 1, stage)))
       report.handles->push_back(handle_along(mesh, surface, loop));
   }
   progress.update(1);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/disjoint_sets.h"
+#include "common/core/threads.h"
 
 namespace meshcomplete {
 namespace {
@@ -17,11 +18,6 @@ const char* const stage = "finding handles";
 constexpr Index none = 0xffffffffu;
 constexpr std::size_t between_checks = 1 << 14;
 constexpr double unreached = std::numeric_limits<double>::infinity();
-
-double length_of(const TriangleMesh& mesh, const CappedSurface& surface, Index h) {
-  const Index a = surface.original[surface.origin[h]], b = surface.original[surface.target(h)];
-  return (mesh.vertices[a] - mesh.vertices[b]).norm();
-}
 
 // An edge that ends in the middle of a cap.
 bool ends_in_middle(const CappedSurface& surface, Index h) {
@@ -38,7 +34,8 @@ struct PathTree {
 
 class PathFinder {
  public:
-  PathFinder(const TriangleMesh& mesh, const CappedSurface& surface) : mesh_(mesh), surface_(surface) {
+  PathFinder(const CappedSurface& surface, const std::vector<double>& lengths)
+      : surface_(surface), lengths_(lengths) {
     const std::size_t count = surface.outgoing.size();
     tree_ = {std::vector<double>(count, unreached), std::vector<Index>(count, none),
              std::vector<Index>(count, 0)};
@@ -73,22 +70,20 @@ class PathFinder {
       Index h = first;
       do {
         const Index target = surface_.target(h);
-        if (surface_.original[target] != CappedSurface::no_vertex) {
-          const double there = distance + length_of(mesh_, surface_, h);
-          if (there < tree_.distance[target]) {
-            tree_.distance[target] = there;
-            tree_.entering[target] = h;
-            tree_.depth[target] = tree_.depth[vertex] + 1;
-            queue.push({there, target});
-          }
+        const double there = distance + lengths_[h];
+        if (there < tree_.distance[target]) {
+          tree_.distance[target] = there;
+          tree_.entering[target] = h;
+          tree_.depth[target] = tree_.depth[vertex] + 1;
+          queue.push({there, target});
         }
         h = surface_.turned(h);
       } while (h != first);
     }
   }
 
-  const TriangleMesh& mesh_;
   const CappedSurface& surface_;
+  const std::vector<double>& lengths_;
   PathTree tree_;
   std::size_t settled_ = 0;
 };
@@ -99,7 +94,7 @@ bool in_tree(const CappedSurface& surface, const PathTree& tree, Index h) {
 
 // The edges that are in neither tree: one for each loop. The tree of faces takes those first whose loops
 // through the root are longest.
-std::vector<Index> generating_edges(const TriangleMesh& mesh, const CappedSurface& surface,
+std::vector<Index> generating_edges(const CappedSurface& surface, const std::vector<double>& lengths,
                                     const PathTree& tree, const Progress& progress) {
   struct Edge {
     double loop;
@@ -110,10 +105,7 @@ std::vector<Index> generating_edges(const TriangleMesh& mesh, const CappedSurfac
   for (Index h = 0; h < surface.opposite.size(); ++h) {
     if (h % between_checks == 0) progress.update(0.3 * h / double(surface.opposite.size()));
     if (h > surface.opposite[h] || in_tree(surface, tree, h)) continue;
-    const double loop = ends_in_middle(surface, h)
-                            ? unreached
-                            : tree.distance[surface.origin[h]] + tree.distance[surface.target(h)] +
-                                  length_of(mesh, surface, h);
+    const double loop = tree.distance[surface.origin[h]] + tree.distance[surface.target(h)] + lengths[h];
     edges.push_back({loop, h});
   }
   tbb::parallel_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
@@ -130,8 +122,8 @@ std::vector<Index> generating_edges(const TriangleMesh& mesh, const CappedSurfac
 }
 
 // Along an edge, and from both of its ends along the tree until the ways meet.
-SurfaceLoop loop_through(const TriangleMesh& mesh, const CappedSurface& surface, const PathTree& tree,
-                         Index edge) {
+SurfaceLoop loop_through(const CappedSurface& surface, const std::vector<double>& lengths,
+                         const PathTree& tree, Index edge) {
   std::vector<Index> to_origin, from_target;
   Index a = surface.origin[edge], b = surface.target(edge);
   while (a != b) {
@@ -147,20 +139,32 @@ SurfaceLoop loop_through(const TriangleMesh& mesh, const CappedSurface& surface,
   loop.half_edges.assign(to_origin.rbegin(), to_origin.rend());
   loop.half_edges.push_back(edge);
   loop.half_edges.insert(loop.half_edges.end(), from_target.begin(), from_target.end());
-  for (const Index h : loop.half_edges) loop.length += length_of(mesh, surface, h);
+  for (const Index h : loop.half_edges) loop.length += lengths[h];
   return loop;
 }
 
 }  // namespace
 
-std::vector<SurfaceLoop> loop_basis(const TriangleMesh& mesh, const CappedSurface& surface,
+std::vector<double> edge_lengths(const TriangleMesh& mesh, const CappedSurface& surface) {
+  std::vector<double> lengths(surface.opposite.size());
+  for_each(lengths.size(), between_checks, Progress(), [&](std::size_t i) {
+    const Index h = static_cast<Index>(i);
+    lengths[h] = ends_in_middle(surface, h) ? unreached
+                                            : (mesh.vertices[surface.original[surface.origin[h]]] -
+                                               mesh.vertices[surface.original[surface.target(h)]])
+                                                  .norm();
+  });
+  return lengths;
+}
+
+std::vector<SurfaceLoop> loop_basis(const CappedSurface& surface, const std::vector<double>& lengths,
                                     const Progress& progress) {
-  const PathTree tree = PathFinder(mesh, surface).find(progress.part(0, 0.5, stage));
-  const std::vector<Index> edges = generating_edges(mesh, surface, tree, progress.part(0.5, 0.9, stage));
+  const PathTree tree = PathFinder(surface, lengths).find(progress.part(0, 0.5, stage));
+  const std::vector<Index> edges = generating_edges(surface, lengths, tree, progress.part(0.5, 0.9, stage));
   std::vector<SurfaceLoop> loops;
   for (const Index edge : edges) {
     progress.check();
-    loops.push_back(loop_through(mesh, surface, tree, edge));
+    loops.push_back(loop_through(surface, lengths, tree, edge));
   }
   std::stable_sort(loops.begin(), loops.end(),
                    [](const SurfaceLoop& a, const SurfaceLoop& b) { return a.length < b.length; });

@@ -22,18 +22,13 @@ constexpr std::size_t between_checks = 1 << 12;
 
 }  // namespace
 
-LoopShortener::LoopShortener(const TriangleMesh& mesh, const CappedSurface& surface)
-    : mesh_(mesh),
-      surface_(surface),
+LoopShortener::LoopShortener(const CappedSurface& surface, const std::vector<double>& lengths)
+    : surface_(surface),
+      lengths_(lengths),
       odd_(surface.opposite.size(), 0),
       stamp_(2 * surface.outgoing.size(), 0),
       distance_(stamp_.size()),
       entering_(stamp_.size()) {}
-
-double LoopShortener::length(Index h) const {
-  const Index a = surface_.original[surface_.origin[h]], b = surface_.original[surface_.target(h)];
-  return (mesh_.vertices[a] - mesh_.vertices[b]).norm();
-}
 
 void LoopShortener::toggle(const std::vector<Index>& crossed) {
   for (const Index h : crossed)
@@ -66,7 +61,7 @@ SurfaceLoop LoopShortener::loop_at(const Meeting& meeting) const {
   loop.half_edges.assign(there.begin() + common, there.end());
   loop.half_edges.push_back(meeting.half_edge);
   for (std::size_t i = back.size(); i-- > common;) loop.half_edges.push_back(surface_.opposite[back[i]]);
-  for (const Index h : loop.half_edges) loop.length += length(h);
+  for (const Index h : loop.half_edges) loop.length += lengths_[h];
   return loop;
 }
 
@@ -86,18 +81,15 @@ bool LoopShortener::shorten_through(Index vertex, SurfaceLoop& loop, const Progr
     const Index first = surface_.outgoing[node / 2];
     Index h = first;
     do {
-      const Index target = surface_.target(h);
-      if (surface_.original[target] != CappedSurface::no_vertex) {
-        const double there = distance + length(h);
-        const Node same = 2 * target + ((node & 1) ^ Node(odd_[h])), other = same ^ 1;
-        if (reached(other) && there + distance_[other] < best.length)
-          best = {there + distance_[other], node, h, other};
-        if (2 * there < best.length && (!reached(same) || there < distance_[same])) {
-          stamp_[same] = round_;
-          distance_[same] = there;
-          entering_[same] = h;
-          queue.push({there, same});
-        }
+      const double there = distance + lengths_[h];
+      const Node same = 2 * surface_.target(h) + ((node & 1) ^ Node(odd_[h])), other = same ^ 1;
+      if (reached(other) && there + distance_[other] < best.length)
+        best = {there + distance_[other], node, h, other};
+      if (2 * there < best.length && (!reached(same) || there < distance_[same])) {
+        stamp_[same] = round_;
+        distance_[same] = there;
+        entering_[same] = h;
+        queue.push({there, same});
       }
       h = surface_.turned(h);
     } while (h != first);

@@ -13,7 +13,8 @@ namespace meshcomplete {
 /// Shortens loops of one surface. Keeps 40 bytes for each vertex. For one thread.
 class LoopShortener {
  public:
-  LoopShortener(const TriangleMesh& mesh, const CappedSurface& surface);
+  /// Refers to both; `lengths`: `edge_lengths`.
+  LoopShortener(const CappedSurface& surface, const std::vector<double>& lengths);
 
   /// A loop that crosses the edges of `crossed` an odd number of times and goes through one of
   /// some vertices of `loop`, which does so itself: the shortest one if that has no more than about a hundred
@@ -40,10 +41,9 @@ class LoopShortener {
   bool reached(Node node) const { return stamp_[node] == round_; }
   SurfaceLoop loop_at(const Meeting& meeting) const;
   std::vector<Index> path_to(Node node) const;
-  double length(Index half_edge) const;
 
-  const TriangleMesh& mesh_;
   const CappedSurface& surface_;
+  const std::vector<double>& lengths_;
   std::vector<char> odd_;  // of half-edges: crossed
   std::vector<std::uint32_t> stamp_;
   std::vector<double> distance_;
