@@ -1,5 +1,6 @@
 #include "filter_volmorph/small_components.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -31,6 +32,52 @@ std::vector<Index> component_sizes(const TriangleMesh& mesh, const std::vector<I
   return size;
 }
 
+struct Extent {  // of a component
+  std::size_t faces = 0;
+  double area = 0;
+  Eigen::AlignedBox3d box;
+
+  bool narrower(double width) const {
+    const double length = box.sizes().maxCoeff();
+    return length < width || area < width * length;
+  }
+};
+
+// Numbers from 0 on instead of the vertices that stand for components; returns how many there are.
+std::size_t number_components(const TriangleMesh& mesh, std::vector<Index>& root) {
+  std::vector<Index> number(root.size(), unused);
+  Index count = 0;
+  for (const Triangle& corners : mesh.triangles)
+    if (Index& own = number[root[corners[0]]]; own == unused) own = count++;
+  for (Index& own : root) own = number[own];
+  return count;
+}
+
+std::vector<Extent> component_extents(const TriangleMesh& mesh, const std::vector<Index>& component,
+                                      std::size_t count, const Progress& progress) {
+  std::vector<Extent> extents(count);
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (face % faces_between_checks == 0) progress.update(double(face) / double(mesh.triangles.size()));
+    const Triangle& corners = mesh.triangles[face];
+    const Vector3 &a = mesh.vertices[corners[0]], &b = mesh.vertices[corners[1]],
+                  &c = mesh.vertices[corners[2]];
+    Extent& extent = extents[component[corners[0]]];
+    ++extent.faces;
+    extent.area += (b - a).cross(c - a).norm() / 2;
+    for (const Vector3* corner : {&a, &b, &c}) extent.box.extend(*corner);
+  }
+  return extents;
+}
+
+// Leaves the faces of the components that are kept.
+template <class Keep>
+void keep_components(TriangleMesh& mesh, const std::vector<Index>& component, Keep&& keep) {
+  std::size_t kept = 0;
+  for (const Triangle& corners : mesh.triangles)
+    if (keep(component[corners[0]])) mesh.triangles[kept++] = corners;
+  mesh.triangles.resize(kept);
+}
+
 void compact(TriangleMesh& mesh) {
   std::vector<Index> number(mesh.vertices.size(), unused);
   for (const Triangle& corners : mesh.triangles)
@@ -53,19 +100,26 @@ TriangleMesh without_small_components(TriangleMesh mesh, std::size_t faces, cons
   const std::vector<Index> root = component_roots(mesh, progress.part(0, 0.8, "finding small components"));
   const std::vector<Index> size = component_sizes(mesh, root);
   progress.update(0.9);
-  std::size_t kept = 0;
-  for (const Triangle& corners : mesh.triangles)
-    if (size[root[corners[0]]] >= faces) mesh.triangles[kept++] = corners;
-  mesh.triangles.resize(kept);
+  keep_components(mesh, root, [&](Index component) { return size[component] >= faces; });
   compact(mesh);
   progress.update(1);
   return mesh;
 }
 
-std::size_t largest_component(const TriangleMesh& mesh, const Progress& progress) {
-  if (mesh.triangles.empty()) return 0;
-  const std::vector<Index> sizes = component_sizes(mesh, component_roots(mesh, progress));
-  return *std::max_element(sizes.begin(), sizes.end());
+TriangleMesh without_narrow_components(TriangleMesh mesh, double width, const Progress& progress) {
+  if (mesh.triangles.empty()) return mesh;
+  std::vector<Index> component = component_roots(mesh, progress.part(0, 0.6, "finding small components"));
+  const std::size_t count = number_components(mesh, component);
+  const std::vector<Extent> extents =
+      component_extents(mesh, component, count, progress.part(0.6, 0.9, "finding small components"));
+  const auto fewer = [](const Extent& a, const Extent& b) { return a.faces < b.faces; };
+  const auto largest =
+      static_cast<Index>(std::max_element(extents.begin(), extents.end(), fewer) - extents.begin());
+  keep_components(mesh, component,
+                  [&](Index own) { return own == largest || !extents[own].narrower(width); });
+  compact(mesh);
+  progress.update(1);
+  return mesh;
 }
 
 }  // namespace meshcomplete

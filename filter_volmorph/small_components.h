@@ -13,7 +13,11 @@ namespace meshcomplete {
 TriangleMesh without_small_components(TriangleMesh mesh, std::size_t faces,
                                       const Progress& progress = Progress());
 
-/// The faces of the component with the most. Cost: O(faces).
-std::size_t largest_component(const TriangleMesh& mesh, const Progress& progress = Progress());
+/// The mesh without its components (connected over vertices) that are narrower than `width`: shorter than it
+/// (the longest side of the bounding box), or with an area smaller than a strip of this width and their
+/// length. The component with the most faces (of several the one with the first face) always stays. Else
+/// as above.
+TriangleMesh without_narrow_components(TriangleMesh mesh, double width,
+                                       const Progress& progress = Progress());
 
 }  // namespace meshcomplete

@@ -2,6 +2,7 @@
 
 #include <openvdb/tools/Prune.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -55,11 +56,10 @@ TriangleMesh deciding_surface(const RangeVolume& volume, const Progress& progres
   options.observed_only = true;
   TriangleMesh surface =
       extract_surface(volume, options, progress.part(0, 0.7, "extracting the observed surface"));
-  const auto largest = largest_component(surface, progress.part(0.7, 0.8, "finding small components"));
-  surface = without_small_components(
-      std::move(surface),
-      static_cast<std::size_t>(std::ceil(smallest_deciding_share * static_cast<double>(largest))),
-      progress.part(0.8, 1, "finding small components"));
+  const double noise =
+      std::max(widest_noise_ramps * volume.frame().ramp, widest_noise_voxels * volume.frame().voxel_size);
+  surface =
+      without_narrow_components(std::move(surface), noise, progress.part(0.7, 1, "finding small components"));
   for (Vector3& vertex : surface.vertices) vertex = volume.frame().voxel(vertex);
   return surface;
 }

@@ -13,11 +13,12 @@ struct SurroundingsResult {
   std::uint64_t emptied = 0;  ///< voxels that were unseen
 };
 
-/// Components of the observed surface with fewer faces than this share of the largest one's are noise and
-/// decide nothing. Faces of marching cubes are about as large as each other, so that it is a share of the
-/// area: a hundredth is a disc with a fifth of a sphere's radius, more than specks between the scans have,
-/// and less than any object worth scanning with others.
-constexpr double smallest_deciding_share = 0.01;
+/// Components of the observed surface that are narrower than so many ramps, or so many voxels if that is
+/// wider (`without_narrow_components`), are noise and decide nothing; the largest always decides. It is no
+/// share of the largest: a coin on a backdrop has its inside, too. Specks and slivers between scans are a
+/// few voxels wide, but often long.
+constexpr double widest_noise_ramps = 2;
+constexpr double widest_noise_voxels = 8;
 
 /// Scans without a backdrop leave large regions unseen outside the object, where no line of sight went
 /// through: the closed surface would show them as solid. Every unseen voxel that lies before the observed

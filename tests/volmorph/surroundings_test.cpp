@@ -131,6 +131,44 @@ TEST(Surroundings, space_between_two_objects_becomes_empty) {
   EXPECT_GT(inside[1], 10u);
 }
 
+TEST(Surroundings, a_small_object_before_a_large_backdrop_keeps_its_inside) {
+  // Of the observed faces it has less than a hundredth.
+  const Vector3 middle(0, 0, 1.2);
+  const double radius = 0.55;
+  const Solid both_of_them = both(half_space(Vector3(0, 0, 0.017), Vector3::UnitZ()), sphere(middle, radius));
+  const RangeVolume volume =
+      merged({scan(both_of_them, LineOfSight::parallel(Vector3::UnitZ()), Vector3::Zero(), 0.047, 150)});
+  std::size_t inside = 0, behind = 0;
+  compare(volume, empty_surroundings(volume), [&](const Vector3& at, VoxelState was, VoxelState is) {
+    if (was != VoxelState::unseen) return;
+    // Where the nearest point is none of the rims: of the cap that was seen, and of its shadow.
+    const Vector3 from = at - middle;
+    const bool in_sphere = from.norm() < radius && from.z() > from.head<2>().norm();
+    const double aside = at.head<2>().norm();
+    if (!in_sphere && !(at.z() < 0 && aside > 1 && aside < 6)) return;
+    ASSERT_EQ(is, VoxelState::unseen) << at.transpose();
+    ++(in_sphere ? inside : behind);
+  });
+  EXPECT_GT(inside, 20u);
+  EXPECT_GT(behind, 10000u);
+}
+
+TEST(Surroundings, a_sliver_of_noise_decides_nothing) {
+  // As below, but it is as long as the sphere is wide, and narrow.
+  std::vector<RangeScan> scans = scans_of(sphere(Vector3::Zero(), 1), six_ways);
+  const Solid sliver = part_of(half_space(Vector3(0, 0, 1.8), Vector3::UnitZ()),
+                               [](const Vector3& at) { return std::abs(at.y() - 1.8) < 0.11; });
+  scans.push_back(scan(sliver, LineOfSight::parallel(Vector3::UnitZ()), Vector3(0, 1.8, 1.8), 0.05, 20));
+  const RangeVolume volume = merged(scans);
+  std::size_t outside = 0;
+  compare(volume, empty_surroundings(volume), [&](const Vector3& at, VoxelState was, VoxelState is) {
+    if (was != VoxelState::unseen || at.norm() < 1 + voxel) return;
+    ASSERT_EQ(is, VoxelState::empty) << at.transpose();
+    ++outside;
+  });
+  EXPECT_GT(outside, 1000u);
+}
+
 TEST(Surroundings, a_speck_of_noise_decides_nothing) {
   // It looks down on the sphere from above, so that all below would lie behind it.
   std::vector<RangeScan> scans = scans_of(sphere(Vector3::Zero(), 1), six_ways);
