@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t fan_out = 4;  // also the faces of the smallest nodes
 constexpr std::size_t nodes_at_once = 256;
+constexpr std::size_t exact_levels = 2;  // whose cones are as narrow as can be; above them are few nodes
 
 std::size_t parents(std::size_t count) { return (count + fan_out - 1) / fan_out; }
 
@@ -90,17 +91,32 @@ void SurfaceSides::build_boxes() {
   } while (sorted.size() > 1);
 }
 
-/// Opens the cone as wide as the normals of the faces (`faces(visit)`) and of those round them.
-template <class Faces>
-void SurfaceSides::widen(Cone& cone, const Stars& stars, const Faces& faces) const {
-  faces([&](Index f) { cone.axis += normals_[f]; });
+/// Opens the cone as wide as the normals of the faces (`order_`, from `begin` on) and of those round them.
+void SurfaceSides::widen(Cone& cone, const Stars& stars, std::size_t begin, std::size_t end) const {
+  for (std::size_t i = begin; i < end; ++i) cone.axis += normals_[order_[i]];
   if (cone.axis.norm() > 0) cone.axis.normalize();
-  faces([&](Index f) {
-    for (const Index v : mesh_.triangles[f]) {
+  for (std::size_t i = begin; i < end; ++i) {
+    for (const Index v : mesh_.triangles[order_[i]]) {
       cone.rim = cone.rim || stars.rim(v);
       stars.visit(v, [&](Index g) { cone.cosine = std::min(cone.cosine, cone.axis.dot(normals_[g])); });
     }
-  });
+  }
+  cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
+}
+
+/// Opens the cone as wide as others, which it then contains.
+void SurfaceSides::widen(Cone& cone, const std::vector<Cone>& others, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) cone.axis += others[i].axis;
+  if (cone.axis.norm() > 0) cone.axis.normalize();
+  for (std::size_t i = begin; i < end; ++i) {
+    const Cone& other = others[i];
+    cone.rim = cone.rim || other.rim;
+    const double between = std::clamp(cone.axis.dot(other.axis), -1.0, 1.0);
+    // The angles add; where they make more than a half turn the cone is everything.
+    const bool all = between + other.cosine <= 0;
+    const double sine = std::sqrt(1 - between * between);
+    cone.cosine = std::min(cone.cosine, all ? -1 : between * other.cosine - sine * other.sine);
+  }
   cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
 }
 
@@ -112,7 +128,7 @@ void SurfaceSides::build_cones(const Progress& progress) {
     Cone& cone = faces_[i];
     cone.middle = (mesh_.vertices[t[0]] + mesh_.vertices[t[1]] + mesh_.vertices[t[2]]) / 3;
     for (const Index v : t) cone.radius = std::max(cone.radius, (mesh_.vertices[v] - cone.middle).norm());
-    widen(cone, stars, [&](auto&& visit) { visit(order_[i]); });
+    widen(cone, stars, i, i + 1);
   });
   std::size_t span = fan_out;
   for (const std::vector<Box>& boxes : boxes_) {
@@ -122,10 +138,11 @@ void SurfaceSides::build_cones(const Progress& progress) {
       Cone& cone = cones[node];
       cone.middle = (corner(boxes[node], 0) + corner(boxes[node], 7)) / 2;
       cone.radius = (corner(boxes[node], 7) - cone.middle).norm();
-      widen(cone, stars, [&](auto&& visit) {
-        const std::size_t end = std::min((node + 1) * span, order_.size());
-        for (std::size_t i = node * span; i < end; ++i) visit(order_[i]);
-      });
+      // The normals themselves make narrower cones, but on all levels that would be O(faces log faces).
+      if (cones_.size() < exact_levels)
+        widen(cone, stars, node * span, std::min((node + 1) * span, order_.size()));
+      else
+        widen(cone, cones_.back(), node * fan_out, std::min((node + 1) * fan_out, cones_.back().size()));
     });
     cones_.push_back(std::move(cones));
     span *= fan_out;

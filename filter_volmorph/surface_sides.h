@@ -53,9 +53,8 @@ class SurfaceSides {
 
   void build_boxes();
   void build_cones(const Progress& progress);
-  template <class Faces>
-  void widen(Cone& cone, const Stars& stars, const Faces& faces) const;
-  Index face(std::size_t i) const { return order_[i]; }
+  void widen(Cone& cone, const Stars& stars, std::size_t begin, std::size_t end) const;
+  static void widen(Cone& cone, const std::vector<Cone>& others, std::size_t begin, std::size_t end);
   void search(const Vector3& point, std::size_t level, std::size_t node, Nearest& nearest) const;
   Nearest nearest(const Vector3& point, Index start) const;
   static bool look(const Cone& cone, const Vector3& middle, double radius, Chances& chances);
