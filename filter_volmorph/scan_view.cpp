@@ -4,16 +4,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "common/core/mesh_topology.h"
+#include "filter_volmorph/image_outline.h"
 
 namespace meshcomplete {
 namespace {
-
-using Vector2 = Eigen::Vector2d;
 
 /// Coordinates in an image are rounded by far less than this part of a pixel, and depths by far less than
 /// this part of a voxel (2^-53 of coordinates of at most 2^20 voxels).
@@ -21,6 +21,14 @@ constexpr double rounding_pad = 1e-6;
 
 /// Enough pixels to tell apart the depths of a few large tilted faces.
 constexpr std::size_t least_pixels = 1 << 14;
+
+/// An image is crowded when a face shares its pixels with more faces than this, on average: in scans with
+/// samples at equal distances they are about ten.
+constexpr std::uint64_t most_faces_in_pixel = 64;
+
+/// Images with fewer faces, or that were halved so often, are not halved any more.
+constexpr std::size_t least_faces_to_halve = 1 << 12;
+constexpr int most_halvings = 40;
 
 /// Of a pixel or of a square of pixels.
 struct Cell {
@@ -49,41 +57,6 @@ struct Level {
   const Cell& at(int column, int row) const { return cells[std::size_t(row) * columns + column]; }
   Cell& at(int column, int row) { return cells[std::size_t(row) * columns + column]; }
 };
-
-/// A convex outline in the image, of at most four corners.
-struct Outline {
-  std::array<Vector2, 4> corners;
-  int count = 0;
-  void add(const Vector2& corner) { corners[static_cast<std::size_t>(count++)] = corner; }
-};
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  void include(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-};
-
-/// The part of the u axis that an outline takes up between two values of v.
-Range columns_between(const Outline& outline, double v_low, double v_high) {
-  Range range;
-  for (int i = 0; i < outline.count; ++i) {
-    Vector2 a = outline.corners[static_cast<std::size_t>(i)];
-    Vector2 b = outline.corners[static_cast<std::size_t>((i + 1) % outline.count)];
-    if (a.y() > b.y()) std::swap(a, b);
-    if (b.y() < v_low || a.y() > v_high) continue;
-    const double height = b.y() - a.y();
-    const auto at = [&](double v) {
-      return height > 0 ? a.x() + std::clamp((v - a.y()) / height, 0.0, 1.0) * (b.x() - a.x()) : a.x();
-    };
-    range.include(at(std::max(v_low, a.y())));
-    range.include(at(std::min(v_high, b.y())));
-    if (height <= 0) range.include(b.x());
-  }
-  return range;
-}
 
 /// Half-edges at which the number of faces on a line of sight changes, when all faces look towards the
 /// sensor: those without a face on the other side of the edge.
@@ -126,6 +99,10 @@ struct ScanView::Image {
   Points points;  ///< parallel: in the view; perspective: from the viewpoint, not turned
   double nearest = 0;
   std::vector<Triangle> triangles;
+  /// The part of the side of the cube, or of the plane, that is this image's, both ends included.
+  Range region[2] = {unlimited, unlimited};
+  double margin = 0;  ///< faces so near to the region may lie in it
+  int halvings = 0;
   Vector2 low, high;  ///< of what the image shows
   double pixel = 1;
   std::vector<std::uint32_t> first;  ///< per pixel, and one more: into `listed`
@@ -136,7 +113,9 @@ struct ScanView::Image {
     return perspective ? Vector3(rotation * (*points)[vertex]) : (*points)[vertex];
   }
   bool project(const Triangle& corners, int count, Outline& outline) const;
-  bool take(const TriangleMesh& scan);
+  bool take(const std::vector<Triangle>& candidates);
+  bool crowded() const;
+  Image half(bool upper) const;
   int number(double x, int axis, int level) const;
   template <class Visit>
   void for_each_pixel(const Outline& outline, Visit&& visit) const;
@@ -182,28 +161,26 @@ bool ScanView::Image::project(const Triangle& corners, int count, Outline& outli
 }
 
 /// Takes the triangles that may lie in the image; false when there are none.
-bool ScanView::Image::take(const TriangleMesh& scan) {
+bool ScanView::Image::take(const std::vector<Triangle>& candidates) {
   Range u, v;
   Outline outline;
-  for (const Triangle& t : scan.triangles) {
+  for (const Triangle& t : candidates) {
     if (!project(t, 3, outline)) continue;
     Range at[2];
     for (int i = 0; i < outline.count; ++i)
       for (int axis = 0; axis < 2; ++axis)
         at[axis].include(outline.corners[static_cast<std::size_t>(i)][axis]);
-    const auto outside = [](const Range& range) { return range.low > 1 || range.high < -1; };
-    if (perspective && (outside(at[0]) || outside(at[1]))) continue;
+    const auto outside = [&](int axis) {
+      return at[axis].low > region[axis].high + margin || at[axis].high < region[axis].low - margin;
+    };
+    if (outside(0) || outside(1)) continue;
     triangles.push_back(t);
     u.include(at[0].low), u.include(at[0].high);
     v.include(at[1].low), v.include(at[1].high);
   }
   if (triangles.empty()) return false;
-  low = Vector2(u.low, v.low);
-  high = Vector2(u.high, v.high);
-  if (perspective) {
-    low = low.cwiseMax(-1);
-    high = high.cwiseMin(1);
-  }
+  low = Vector2(std::max(u.low, region[0].low), std::max(v.low, region[1].low));
+  high = Vector2(std::min(u.high, region[0].high), std::min(v.high, region[1].high)).cwiseMax(low);
   const Vector2 size = high - low;
   const double wanted = static_cast<double>(std::max(least_pixels, triangles.size()));
   // A strip has no area to speak of: as many pixels along it, then.
@@ -288,6 +265,38 @@ void ScanView::Image::list_faces() {
     });
   }
   first.pop_back();
+}
+
+/// Whether the pixels are too large for most of the faces: where samples are much nearer to each other than
+/// elsewhere, or a fragment lies far away.
+bool ScanView::Image::crowded() const {
+  if (halvings == most_halvings || triangles.size() < least_faces_to_halve) return false;
+  std::uint64_t squares = 0;
+  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+    const std::uint64_t count = first[i + 1] - first[i];
+    squares += count * count;
+  }
+  return squares > most_faces_in_pixel * listed.size();
+}
+
+/// One half of this image's region, without faces yet. Points belong to one of them.
+ScanView::Image ScanView::Image::half(bool upper) const {
+  Image half;
+  half.perspective = perspective;
+  half.rotation = rotation;
+  half.origin = origin;
+  half.points = points;
+  half.nearest = nearest;
+  half.margin = rounding_pad * pixel;
+  half.halvings = halvings + 1;
+  std::copy(std::begin(region), std::end(region), std::begin(half.region));
+  const int axis = high.x() - low.x() >= high.y() - low.y() ? 0 : 1;
+  const double middle = (low[axis] + high[axis]) / 2;
+  if (upper)
+    half.region[axis].low = middle;
+  else
+    half.region[axis].high = std::nextafter(middle, low[axis]);
+  return half;
 }
 
 /// What the pixels show: partly covered along the boundary half-edges, elsewhere as in their middles.
@@ -394,6 +403,23 @@ BlockView ScanView::Image::judge(const Range& u, const Range& v, const Range& de
 
 ScanView::ScanView(std::shared_ptr<const Image> image) : image_(std::move(image)) {}
 
+/// The image, or its halves, and theirs, as long as they are crowded.
+void ScanView::add_views(std::shared_ptr<Image> image, const std::vector<Triangle>& candidates,
+                         const TriangleMesh& scan, const std::vector<Index>& boundary,
+                         std::vector<ScanView>& views) {
+  if (!image->take(candidates)) return;
+  image->list_faces();
+  if (image->crowded()) {
+    image->first = {}, image->listed = {}, image->levels = {};
+    for (const bool upper : {false, true})
+      add_views(std::make_shared<Image>(image->half(upper)), image->triangles, scan, boundary, views);
+    return;
+  }
+  image->find_cover(scan, boundary);
+  image->build_levels();
+  views.push_back(ScanView(std::move(image)));
+}
+
 std::vector<ScanView> ScanView::make(const TriangleMesh& scan, const LineOfSight& line_of_sight,
                                      double nearest) {
   const std::vector<Index> boundary = cover_changes(scan);
@@ -419,11 +445,8 @@ std::vector<ScanView> ScanView::make(const TriangleMesh& scan, const LineOfSight
     image->rotation.row(2) = (side % 2 == 0 ? 1 : -1) * turned.row(axis);
     image->rotation.row(0) = turned.row((axis + 1) % 3);
     image->rotation.row(1) = turned.row((axis + 2) % 3);
-    if (!image->take(scan)) continue;
-    image->list_faces();
-    image->find_cover(scan, boundary);
-    image->build_levels();
-    views.push_back(ScanView(std::move(image)));
+    if (whole.perspective) image->region[0] = image->region[1] = {-1, 1};
+    add_views(std::move(image), scan.triangles, scan, boundary, views);
   }
   return views;
 }

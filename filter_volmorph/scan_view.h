@@ -35,17 +35,21 @@ struct Sighting {
 };
 
 /// One image of a scan: the lines of sight that are parallel, or those from a viewpoint that go through one
-/// side of a cube around it. Immutable, safe to ask from many threads.
+/// side of a cube around it, or through a part of that. Immutable, safe to ask from many threads.
 ///
-/// An image has about as many pixels as the scan has faces. Every pixel knows the faces in it, bounds of
-/// their depth, and whether they cover all of it; squares of two by two pixels know the same, and so on up.
-/// Cover only changes at the scan's boundary edges, so a pixel without one is covered where its middle is.
+/// An image has about as many pixels as faces. Where many faces crowd in few pixels, since others lie far
+/// away or are much larger, the image is halved until they do not. Every pixel knows the faces in it, bounds
+/// of their depth, and whether they cover all of it; squares of two by two pixels know the same, and so on
+/// up. Cover only changes at the scan's boundary edges, so a pixel without one is covered where its middle
+/// is.
 class ScanView {
  public:
-  /// The images that together hold a scan: one for parallel lines of sight, up to six for a viewpoint.
+  /// The images that together hold a scan: one for parallel lines of sight, up to six for a viewpoint, more
+  /// where faces crowd. A point lies in one image only, or on the border of two of the six.
   /// `line_of_sight` is one of these. All faces have an area and look towards the sensor, and are farther
   /// than `nearest` (above 0) from a viewpoint. Lengths are in voxels: decisions are padded for rounding in
-  /// that unit. Cost: O(faces) for faces that are about equally large.
+  /// that unit. Cost: O(faces) for faces that are about equally large; for
+  /// others at most about forty times that.
   static std::vector<ScanView> make(const TriangleMesh& scan, const LineOfSight& line_of_sight,
                                     double nearest);
 
@@ -61,6 +65,9 @@ class ScanView {
  private:
   struct Image;
   explicit ScanView(std::shared_ptr<const Image> image);
+  static void add_views(std::shared_ptr<Image> image, const std::vector<Triangle>& candidates,
+                        const TriangleMesh& scan, const std::vector<Index>& boundary,
+                        std::vector<ScanView>& views);
   std::shared_ptr<const Image> image_;
 };
 
