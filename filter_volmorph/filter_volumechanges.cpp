@@ -25,7 +25,7 @@ std::vector<ParameterDeclaration> result_parameters() {
       switch_parameter(
           "AsNewLayer", "Result as new layer",
           "The result becomes a layer of its own and the current layer stays as it is, since MeshLab cannot "
-          "undo a filter. Both share what did not change.",
+          "undo a filter. Both share the grids that did not change.",
           false)};
 }
 

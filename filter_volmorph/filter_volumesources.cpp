@@ -111,7 +111,10 @@ void apply_voxelize(FilterRun& run) {
   refuse_other_than_meshes(current);
   VoxelizedMesh made = voxelize_mesh(layer_surface(current).mesh, size_options(run.parameters), run.progress);
   if (made.rim_edges > 0)
-    run.log(QString::number(made.rim_edges) + " edges at holes: what lies behind them was not seen");
+    run.log(
+        QString::number(made.rim_edges) +
+        " edges at holes: what lies behind them was not seen. Nobody looked through what lies before them, "
+        "either: \"Range Volume: Fill\" closes wide holes better with its line of sight off");
   log_volume(run, made.volume);
   run.report.stage_seconds = std::move(made.stage_seconds);
   add_volume_layer(run.document, made.volume, current.label() + " volume");

@@ -130,13 +130,14 @@ struct ScanView::Image {
 };
 
 /// Above 0 to the left of the edge as the sensor sees it. The same number, negated, for the edge the other
-/// way round: that is why the ends are put into order.
+/// way round: that is why the ends are put into order. Exactly 0 for parallel rays through one of the ends,
+/// so that a voxel straight above a vertex does not fall between the faces round it.
 inline double ScanView::Image::edge(Index a, Index b, const Vector3& line) const {
   const bool turned = a > b;
   const Vector3 &p = (*points)[turned ? b : a], &q = (*points)[turned ? a : b];
-  const double side =
-      perspective ? -line.dot(p.cross(q))
-                  : line.x() * (p.y() - q.y()) + line.y() * (q.x() - p.x()) + (p.x() * q.y() - p.y() * q.x());
+  const double side = perspective
+                          ? -line.dot(p.cross(q))
+                          : (p.x() - line.x()) * (q.y() - line.y()) - (q.x() - line.x()) * (p.y() - line.y());
   return turned ? -side : side;
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tests/volmorph/scans.h"
@@ -100,6 +101,24 @@ TEST_P(CrowdedViews, never_say_more_of_a_cube_than_is_known) {
 }
 
 INSTANTIATE_TEST_SUITE_P(LinesOfSight, CrowdedViews, testing::Bool());
+
+TEST(ScanView, points_straight_above_a_vertex_meet_one_of_the_faces_round_it) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(0, 100), part(0.5, 1.5);
+  for (int i = 0; i < 2000; ++i) {
+    TriangleMesh fan;
+    const Vector3 middle(place(random), place(random), place(random));
+    fan.vertices.push_back(middle);
+    constexpr int faces = 7;
+    for (Index k = 0; k < faces; ++k) {
+      const double angle = 2 * M_PI * k / faces, radius = part(random);
+      fan.vertices.push_back(middle + Vector3(radius * std::cos(angle), radius * std::sin(angle), 0.1));
+      fan.triangles.push_back({0, k + 1, (k + 1) % faces + 1});
+    }
+    const ScanView view = ScanView::make(fan, LineOfSight::parallel(Vector3::UnitZ()), 1).front();
+    ASSERT_EQ(view.sight(middle + Vector3(0, 0, 0.5), 1).view, BlockView::near) << i;
+  }
+}
 
 }  // namespace
 }  // namespace meshcomplete
