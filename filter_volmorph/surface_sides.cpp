@@ -169,9 +169,11 @@ void SurfaceSides::search(const Vector3& point, std::size_t level, std::size_t n
   const std::size_t end = std::min((node + 1) * fan_out, boxes_[level - 1].size());
   for (std::size_t i = node * fan_out; i < end; ++i) {
     const double square = squared_distance(boxes_[level - 1][i], point);
-    if (square <= nearest.square) children[count++] = {square, i};
+    if (square > nearest.square) continue;
+    std::size_t at = count++;  // the nearest first
+    for (; at > 0 && children[at - 1].first > square; --at) children[at] = children[at - 1];
+    children[at] = {square, i};
   }
-  std::sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t i = 0; i < count; ++i)
     if (children[i].first <= nearest.square) search(point, level - 1, children[i].second, nearest);
 }
