@@ -86,4 +86,9 @@ rm "$images"/poisson-horseshoe{,-guided}-before.png
 # Those are the same as with atomic volumes.
 rm "$images"/poisson-{gap,island,torus,guided}-before.png
 
+# By triangle fans; before, it is as above.
+picture "$cache/data/mech-holes-shark.off" "$images/fan-shark" -f "Close Holes: Triangle Fan" --size=480,360 \
+  --from=-1,-0.3,0.3 --width=1 --edges
+rm "$images/fan-shark-before.png"
+
 [ $# -eq 0 ] || picture "$1" "$images/bunny" --from=0.1,-1,0.15 --up=0,0,1
