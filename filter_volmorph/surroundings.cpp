@@ -65,15 +65,11 @@ TriangleMesh deciding_surface(const RangeVolume& volume, const Progress& progres
 }
 
 /// The unseen voxels of a block.
-BlockBits unseen_bits(const StateReader& states, const Coord& lowest) {
+BlockBits unseen_in_block(const StateReader& states, const Coord& lowest) {
+  if (const auto* leaf = states.probeConstLeaf(lowest)) return unseen_bits(*leaf);
+  bool empty = true;
   BlockBits bits;
-  if (const auto* leaf = states.probeConstLeaf(lowest)) {
-    for (int x = 0; x < block_size; ++x)
-      bits[x] = ~leaf->valueMask().getWord<std::uint64_t>(x) & ~leaf->buffer().data()[x];
-  } else {
-    bool empty = true;
-    bits.fill(!states.probeValue(lowest, empty) && !empty ? ~std::uint64_t(0) : 0);
-  }
+  bits.fill(!states.probeValue(lowest, empty) && !empty ? ~std::uint64_t(0) : 0);
   return bits;
 }
 
@@ -83,7 +79,7 @@ bool may_be_unseen(const StateReader& states, const Coord& low, int side) {
     bool empty = true;
     return !states.probeValue(low, empty) && !empty;
   }
-  return side > block_size || any_bit(unseen_bits(states, low));
+  return side > block_size || any_bit(unseen_in_block(states, low));
 }
 
 /// Decides which unseen voxels lie before the surface.
@@ -143,7 +139,7 @@ class Sides {
   BlockChange decide_voxels(const StateReader& states, const Cube& block) const {
     BlockChange change{to_coord(block.low), {}};
     Index start = block.start;
-    decide_part(unseen_bits(states, change.lowest), {0, 0, 0}, block_size / 2, start, change);
+    decide_part(unseen_in_block(states, change.lowest), {0, 0, 0}, block_size / 2, start, change);
     return change;
   }
 
@@ -194,7 +190,7 @@ std::uint64_t empty_cube(openvdb::BoolGrid& grid, const Coord& low, int side) {
           grid, low.offsetBy(side / 2 * (k >> 2), side / 2 * (k >> 1 & 1), side / 2 * (k & 1)), side / 2);
     return count;
   }
-  const BlockBits unseen = unseen_bits(grid.getConstAccessor(), low);
+  const BlockBits unseen = unseen_in_block(grid.getConstAccessor(), low);
   std::uint64_t* empty = grid.tree().touchLeaf(low)->buffer().data();
   for (int x = 0; x < block_size; ++x) empty[x] |= unseen[x];
   return static_cast<std::uint64_t>(count_bits(unseen));

@@ -22,8 +22,7 @@ ParameterDeclaration parameter(ParameterType type, const char* name, const char*
 }  // namespace
 
 ParameterDeclaration switch_parameter(const char* name, const char* label, const char* meaning, bool on) {
-  ParameterDeclaration result = parameter(ParameterType::boolean, name, label, meaning, on);
-  return result;
+  return parameter(ParameterType::boolean, name, label, meaning, on);
 }
 
 ParameterDeclaration choice_parameter(const char* name, const char* label, const char* meaning,

@@ -6,7 +6,8 @@ import unittest
 
 from runner_case import Ply, RunnerCase, grid, sphere, write_ply
 
-VOXELIZE, MERGE, SLICE = (f"Range Volume: {name}" for name in ("Voxelize Mesh", "Merge Scans", "Slice"))
+VOXELIZE, MERGE, SLICE, EXTRACT = (
+    f"Range Volume: {name}" for name in ("Voxelize Mesh", "Merge Scans", "Slice", "Extract Surface"))
 
 
 class VolumeLayers(RunnerCase):
@@ -42,6 +43,32 @@ class VolumeLayers(RunnerCase):
         self.assertIn("The slice has 4064 x 4064 pixels; a layer may have 16000000. Write images", message)
         self.check(0, *made, "-f", SLICE, "-p", "Axis=x", "-o", "out.ply")
         self.assertEqual(len(Ply(self.path("out.ply")).triangles), 2 * 4064 * 16)
+
+    def test_what_was_not_observed_is_selected_and_has_no_weight(self):
+        """And may be left as it is; the surface is the same."""
+        write_ply(self.path("in.ply"), *sphere())
+        made = ("-i", "in.ply", "-f", VOXELIZE, "-p", "VoxelSize=0.1", "-f", EXTRACT)
+        self.check(0, *made, "-o", "all.ply", "--report", "report.json")
+        figures = self.read_report()["filters"][1]["figures"]
+        observed, bounded = figures["surface observed faces"], figures["surface boundary faces"]
+        self.assertGreater(min(observed, bounded), 10)
+        self.assertEqual(figures["surface filled faces"], 0)
+        everything = Ply(self.path("all.ply"))
+        self.assertEqual(len(everything.triangles), observed + bounded)
+        self.check(0, *made, "-f", "Delete Selected Faces", "-o", "kept.ply")
+        self.assertEqual(len(Ply(self.path("kept.ply")).triangles), observed)
+        self.check(0, *made, "-p", "FilledSelected=false", "Measure=false", "-f", "Delete Selected Faces", "-o", "left.ply",
+                   "--report", "report.json")
+        self.assertEqual(Ply(self.path("left.ply")).triangles, everything.triangles)
+        self.assertNotIn("surface genus", self.read_report()["filters"][1]["figures"])
+
+    def test_an_extracted_surface_is_no_scan(self):
+        write_ply(self.path("in.ply"), *grid())
+        merge = ("-f", MERGE, "-p", "VoxelSize=0.1", "LineOfSight=Z axis of each layer")
+        result = self.check(0, "-i", "in.ply", *merge, "-f", EXTRACT, *merge, "-o", "out.ply", "--report", "report.json")
+        self.assertIn("Left out: range volume surface, a surface that was extracted from a volume", result.stdout)
+        first, _, again = (entry["figures"] for entry in self.read_report()["filters"])
+        self.assertEqual(again, first)
 
     def test_layers_far_apart(self):
         write_ply(self.path("here.ply"), *grid())

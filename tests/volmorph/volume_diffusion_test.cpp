@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "common/core/error.h"
 #include "common/core/mesh_statistics.h"
+#include "filter_volmorph/diffusion_blocks.h"
 #include "filter_volmorph/surface_extraction.h"
 #include "tests/support/cancelling.h"
 #include "tests/volmorph/volumes.h"
@@ -371,6 +373,21 @@ TEST(VolumeDiffusion, can_be_cancelled) {
   const RangeVolume volume = scanned(cube_of(26), sphere);
   test::expect_cancels_at_any_step(
       [&](const Progress& progress) { diffuse(volume, volume.frame().box, {}, progress); });
+}
+
+TEST(VolumeDiffusion, says_what_memory_it_needs_before_it_takes_it) {
+  const RangeVolume volume = sphere_volume(32);
+  DiffusionOptions options;
+  options.max_memory = 2 * bytes_per_diffusion_block;
+  try {
+    diffuse(volume, volume.frame().box, options);
+    FAIL() << "not refused";
+  } catch (const CompletionError& error) {
+    EXPECT_NE(std::string(error.what()).find("GB of memory"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("Lower Reach"), std::string::npos) << error.what();
+  }
+  options.max_memory = 0;
+  EXPECT_THROW(diffuse(volume, volume.frame().box, options), CompletionError);
 }
 
 TEST(VolumeDiffusion, refuses_options_out_of_range) {
