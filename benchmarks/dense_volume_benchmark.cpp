@@ -31,7 +31,7 @@ class DenseStates {
   explicit DenseStates(const RangeVolume& volume)
       : low_(volume.frame().box.low), size_(volume.frame().box.size()) {
     states_.resize(std::size_t(size_.x()) * std::size_t(size_.y()) * std::size_t(size_.z()));
-    for_ranges(std::size_t(size_.x() / block_side), slabs_at_once, Progress(),
+    for_ranges(std::size_t(size_.x() / block_size), slabs_at_once, Progress(),
                [&](std::size_t begin, std::size_t end) {
                  BlockReader reader(volume);
                  for (std::size_t x = begin; x < end; ++x) read_slab(reader, int(x));
@@ -58,15 +58,15 @@ class DenseStates {
 
   void read_slab(BlockReader& reader, int x) {
     BlockValues values;
-    for (int y = 0; y < size_.y() / block_side; ++y)
-      for (int z = 0; z < size_.z() / block_side; ++z) {
+    for (int y = 0; y < size_.y() / block_size; ++y)
+      for (int z = 0; z < size_.z() / block_size; ++z) {
         const VoxelIndex block(x, y, z);
         reader.read(block_of(low_) + block, values);
-        for (int i = 0; i < block_side; ++i)
-          for (int j = 0; j < block_side; ++j)
-            for (int k = 0; k < block_side; ++k) {
+        for (int i = 0; i < block_size; ++i)
+          for (int j = 0; j < block_size; ++j)
+            for (int k = 0; k < block_size; ++k) {
               const auto from = static_cast<std::size_t>(BlockValues::number(i, j, k));
-              states_[number(block_side * x + i, block_side * y + j, block_side * z + k)] =
+              states_[number(block_size * x + i, block_size * y + j, block_size * z + k)] =
                   values.seen[from]           ? VoxelState::seen
                   : values.distance[from] < 0 ? VoxelState::unseen
                                               : VoxelState::empty;

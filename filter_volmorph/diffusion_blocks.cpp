@@ -145,11 +145,11 @@ openvdb::MaskTree voxels_within_reach(const RangeVolume& volume, const VoxelBox&
 // Writes what the volume knows of the block.
 void read_block(const VoxelReader& reader, const openvdb::FloatGrid::ConstAccessor& distances, bool normals,
                 DiffusionBlock& block) {
-  const openvdb::Coord origin = to_coord(block_side * block.index);
+  const openvdb::Coord origin = to_coord(block_size * block.index);
   block.distance.fill(0);
   for (int number = 0; number < block_voxels; ++number) {
-    const openvdb::Coord at = origin.offsetBy(number / (block_side * block_side),
-                                              number / block_side % block_side, number % block_side);
+    const openvdb::Coord at = origin.offsetBy(number / (block_size * block_size),
+                                              number / block_size % block_size, number % block_size);
     block.known[number] = distances.probeValue(at, block.distance[number]);
     if (!block.known[number]) block.distance[number] = 0;
     block.empty[number] = block.within[number] && reader.state(at) == VoxelState::empty;
@@ -182,7 +182,7 @@ std::vector<VoxelIndex> blocks_around(const openvdb::MaskTree& within, const Vol
   std::vector<VoxelIndex> blocks;
   for (auto leaf = within.cbeginLeaf(); leaf; ++leaf)
     for_each_neighbour(block_of(to_voxel(leaf->origin())), [&](int, const VoxelIndex& block) {
-      const openvdb::Coord at = to_coord(block_side * block);
+      const openvdb::Coord at = to_coord(block_size * block);
       if (block_of(to_voxel(leaf->origin())) == block || distances.probeConstLeaf(at) ||
           distances.isValueOn(at))
         blocks.push_back(block);
@@ -208,7 +208,7 @@ std::vector<DiffusionBlock> diffusion_blocks(const RangeVolume& volume, const Vo
     const auto distances = grids.distance->getConstAccessor();
     for (std::size_t i = begin; i < end; ++i) {
       DiffusionBlock& block = blocks[i];
-      if (const auto* leaf = within.probeConstLeaf(to_coord(block_side * block.index)))
+      if (const auto* leaf = within.probeConstLeaf(to_coord(block_size * block.index)))
         for (auto on = leaf->cbeginValueOn(); on; ++on) block.within[on.pos()] = true;
       read_block(reader, distances, normals, block);
       if (block.within.any())
@@ -236,7 +236,7 @@ RangeVolume with_distances(const RangeVolume& volume, const std::vector<Diffusio
   for (const DiffusionBlock& block : blocks) {
     if (visited++ % leaves_between_checks == 0) progress.check();
     if (block.within.none()) continue;
-    auto* leaf = distance->tree().touchLeaf(to_coord(block_side * block.index));
+    auto* leaf = distance->tree().touchLeaf(to_coord(block_size * block.index));
     for (int number = 0; number < block_voxels; ++number)
       if (block.within[number] && block.known[number])
         leaf->setValueOn(openvdb::Index(number), block.distance[number]);

@@ -13,9 +13,9 @@
 
 namespace meshcomplete {
 
-constexpr int block_voxels = block_side * block_side * block_side;
+constexpr int block_voxels = block_size * block_size * block_size;
 /// A voxel's number in its block.
-constexpr int block_number(int x, int y, int z) { return (x * block_side + y) * block_side + z; }
+constexpr int block_number(int x, int y, int z) { return (x * block_size + y) * block_size + z; }
 
 /// One coordinate of each voxel's normal, a unit vector or a mean of such, times 32767; 0 where it has none.
 using NormalPart = std::array<std::int16_t, block_voxels>;

@@ -14,7 +14,7 @@
 namespace meshcomplete {
 namespace {
 
-constexpr int row = block_side;          // voxels along z
+constexpr int row = block_size;          // voxels along z
 constexpr int rows_at_once = 4;          // whose sums fit into the registers
 constexpr int side = BlockValues::side;  // of a halo
 
@@ -22,8 +22,8 @@ constexpr int side = BlockValues::side;  // of a halo
 
 MESHCOMPLETE_WITH_AVX2
 void sum_neighbours(const std::uint8_t* weights, const Halo<float>& values, Block<float>& sums) {
-  for (int x = 0; x < block_side; ++x)
-    for (int y = 0; y < block_side; y += rows_at_once) {
+  for (int x = 0; x < block_size; ++x)
+    for (int y = 0; y < block_size; y += rows_at_once) {
       float sum[rows_at_once][row] = {};
       const int to = block_number(x, y, 0);
       for (int place = 0, k = 0; place < 27; ++place) {
@@ -41,7 +41,7 @@ void sum_neighbours(const std::uint8_t* weights, const Halo<float>& values, Bloc
 
 MESHCOMPLETE_WITH_AVX2
 void blur_neighbours(const Halo<float>& values, Block<float>& sums) {
-  constexpr int rows = block_side * block_side;
+  constexpr int rows = block_size * block_size;
   std::array<float, side * side * row> along_z;
   std::array<float, side * rows> along_yz;
   for (int i = 0; i < side * side; ++i) {
@@ -53,8 +53,8 @@ void blur_neighbours(const Halo<float>& values, Block<float>& sums) {
     for (int i = 0; i < rows; ++i) along_yz[x * rows + i] = from[i] + 2 * from[i + row] + from[i + 2 * row];
   }
   constexpr float face = 4, middle = 8;  // what they have in the blur
-  for (int x = 0; x < block_side; ++x)
-    for (int y = 0; y < block_side; ++y)
+  for (int x = 0; x < block_size; ++x)
+    for (int y = 0; y < block_size; ++y)
       for (int z = 0; z < row; ++z) {
         const int to = block_number(x, y, z);
         const float* from = along_yz.data() + to;

@@ -94,8 +94,8 @@ struct Around {
 };
 
 int halo_number(int number, int dx, int dy, int dz) {
-  return BlockValues::number(number / (block_side * block_side) + dx, number / block_side % block_side + dy,
-                             number % block_side + dz);
+  return BlockValues::number(number / (block_size * block_size) + dx, number / block_size % block_size + dy,
+                             number % block_size + dz);
 }
 
 struct Arrival {

@@ -28,14 +28,14 @@ void gather(const DiffusionBlock& centre, Value nothing, Halo<Value>& halo, Valu
     else
       std::copy_n(source + from, count, halo.begin() + to);
   };
-  for (int x = -1; x <= block_side; ++x)
-    for (int y = -1; y <= block_side; ++y) {
-      const int bx = x < 0 ? 0 : x < block_side ? 1 : 2, by = y < 0 ? 0 : y < block_side ? 1 : 2;
-      const int row = block_number(x - block_side * (bx - 1), y - block_side * (by - 1), 0);
+  for (int x = -1; x <= block_size; ++x)
+    for (int y = -1; y <= block_size; ++y) {
+      const int bx = x < 0 ? 0 : x < block_size ? 1 : 2, by = y < 0 ? 0 : y < block_size ? 1 : 2;
+      const int row = block_number(x - block_size * (bx - 1), y - block_size * (by - 1), 0);
       const int place = bx * 9 + by * 3;
-      copy(place, row + block_side - 1, 1, BlockValues::number(x, y, -1));
-      copy(place + 1, row, block_side, BlockValues::number(x, y, 0));
-      copy(place + 2, row, 1, BlockValues::number(x, y, block_side));
+      copy(place, row + block_size - 1, 1, BlockValues::number(x, y, -1));
+      copy(place + 1, row, block_size, BlockValues::number(x, y, 0));
+      copy(place + 2, row, 1, BlockValues::number(x, y, block_size));
     }
 }
 

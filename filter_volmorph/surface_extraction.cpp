@@ -27,11 +27,11 @@ constexpr double least_float_steps = 4;
 constexpr std::size_t most_faces = std::size_t(1) << 30;  // that `build_topology` takes
 constexpr std::size_t blocks_at_once = 32;
 constexpr std::size_t missing = ~std::size_t(0);
-constexpr int edges_in_block = 3 * block_side * block_side * block_side;
+constexpr int edges_in_block = 3 * block_size * block_size * block_size;
 
 // A block's edges are those from its voxels upwards along an axis.
 int edge_number(int axis, int x, int y, int z) {
-  return ((axis * block_side + x) * block_side + y) * block_side + z;
+  return ((axis * block_size + x) * block_size + y) * block_size + z;
 }
 
 // The edges of a block with some property, numbered.
@@ -112,9 +112,9 @@ class Cells {
 
 template <class Visit>
 void for_each_voxel(Visit&& visit) {
-  for (int x = 0; x < block_side; ++x)
-    for (int y = 0; y < block_side; ++y)
-      for (int z = 0; z < block_side; ++z) visit(x, y, z);
+  for (int x = 0; x < block_size; ++x)
+    for (int y = 0; y < block_size; ++y)
+      for (int z = 0; z < block_size; ++z) visit(x, y, z);
 }
 
 Block count_block(const VoxelIndex& index, const Cells& cells) {
@@ -219,7 +219,7 @@ class Extractor {
         const double from = values.distance[BlockValues::number(x, y, z)];
         const double to = values.distance[BlockValues::number(high.x(), high.y(), high.z())];
         const double t = std::clamp(from / (from - to), crossing_margin, 1 - crossing_margin);
-        const VoxelIndex voxel = block_side * block.index + low;
+        const VoxelIndex voxel = block_size * block.index + low;
         const EdgePlace place(coordinate(axis, voxel[axis]), coordinate(axis, voxel[axis] + 1));
         Vector3 at;
         for (int a = 0; a < 3; ++a) at[a] = float(coordinate(a, voxel[a]));
@@ -263,7 +263,7 @@ class Extractor {
     VoxelIndex at = cell + VoxelIndex(edge.low & 1, edge.low >> 1 & 1, edge.low >> 2);
     int step = 0;
     for (int axis = 0; axis < 3; ++axis)
-      if (at[axis] == block_side) {
+      if (at[axis] == block_size) {
         at[axis] = 0;
         step |= 1 << axis;
       }

@@ -10,11 +10,11 @@ namespace {
 
 using StateLeaf = openvdb::BoolTree::LeafNodeType;
 using DistanceLeaf = openvdb::FloatTree::LeafNodeType;
-static_assert(StateLeaf::DIM == block_side && DistanceLeaf::DIM == block_side);
+static_assert(StateLeaf::DIM == block_size && DistanceLeaf::DIM == block_size);
 
 constexpr std::size_t blocks_at_once = 256;
 
-openvdb::Coord first_voxel(const VoxelIndex& block) { return to_coord(block * block_side); }
+openvdb::Coord first_voxel(const VoxelIndex& block) { return to_coord(block * block_size); }
 
 // A cube of blocks that all have the same distance.
 struct Tile {
@@ -43,7 +43,7 @@ void add_tiles(Iterator tile, const Progress& progress, std::vector<Tile>& tiles
     if (!wanted(tile.getValue())) continue;
     openvdb::CoordBBox box;
     tile.getBoundingBox(box);
-    tiles.push_back({block_of(to_voxel(box.min())), box.dim().x() / block_side});
+    tiles.push_back({block_of(to_voxel(box.min())), box.dim().x() / block_size});
   }
 }
 
@@ -130,14 +130,14 @@ struct BlockReader::Grids {
     float tile_distance = 0;
     const bool tile_seen = !states && state.probeValue(origin, tile_empty);
     const bool tile_known = !distances && distance.probeValue(origin, tile_distance);
-    const auto first = [&](int axis) { return step[axis] < 0 ? block_side - 1 : 0; };
-    const auto last = [&](int axis) { return step[axis] > 0 ? 0 : block_side - 1; };
+    const auto first = [&](int axis) { return step[axis] < 0 ? block_size - 1 : 0; };
+    const auto last = [&](int axis) { return step[axis] > 0 ? 0 : block_size - 1; };
     for (int x = first(0); x <= last(0); ++x)
       for (int y = first(1); y <= last(1); ++y)
         for (int z = first(2); z <= last(2); ++z) {
-          const openvdb::Index at = openvdb::Index((x * block_side + y) * block_side + z);
-          const int to = BlockValues::number(x + block_side * step.x(), y + block_side * step.y(),
-                                             z + block_side * step.z());
+          const openvdb::Index at = openvdb::Index((x * block_size + y) * block_size + z);
+          const int to = BlockValues::number(x + block_size * step.x(), y + block_size * step.y(),
+                                             z + block_size * step.z());
           const bool seen = states ? states->isValueOn(at) : tile_seen;
           const bool empty = states ? states->getValue(at) : tile_empty;
           const bool known = distances ? distances->isValueOn(at) : tile_known;

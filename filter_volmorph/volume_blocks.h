@@ -7,16 +7,15 @@
 #include <vector>
 
 #include "common/core/progress.h"
+#include "filter_volmorph/block_bits.h"
 #include "filter_volmorph/range_volume.h"
 
 namespace meshcomplete {
 
-constexpr int block_side = 8;  ///< voxels
-
-/// The block that a voxel lies in. Block b begins at voxel `block_side * b`.
+/// The block that a voxel lies in. Block b begins at voxel `block_size * b`.
 inline VoxelIndex block_of(const VoxelIndex& voxel) {
   return voxel.unaryExpr(
-      [](int x) { return x >= 0 ? x / block_side : -((block_side - 1 - x) / block_side); });
+      [](int x) { return x >= 0 ? x / block_size : -((block_size - 1 - x) / block_size); });
 }
 
 /// The order in which blocks are kept: x, then y, then z.
@@ -27,7 +26,7 @@ inline bool block_before(const VoxelIndex& a, const VoxelIndex& b) {
 
 /// A block and the voxels round it.
 struct BlockValues {
-  static constexpr int side = block_side + 2;
+  static constexpr int side = block_size + 2;
   static constexpr int count = side * side * side;
   /// x, y and z from -1 to 8, counted from the block's first voxel.
   static constexpr int number(int x, int y, int z) { return ((x + 1) * side + y + 1) * side + z + 1; }

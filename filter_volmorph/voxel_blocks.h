@@ -6,13 +6,14 @@
 #include <memory>
 
 #include "common/core/progress.h"
+#include "filter_volmorph/block_bits.h"
 #include "filter_volmorph/range_volume.h"
 
 namespace meshcomplete {
 
 /// All that is known of 8 x 8 x 8 voxels. Voxel (x, y, z) from the low corner is number 64 x + 8 y + z.
 struct VoxelBlock {
-  static constexpr int side = 8;
+  static constexpr int side = block_size;
   static constexpr int count = side * side * side;
   static constexpr int number(int x, int y, int z) { return (x * side + y) * side + z; }
 
